@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "acquisition/types/contour.hpp"
+
+namespace arris {
+
+/// Where a point falls on a polyline.
+struct CurveFoot {
+  double arc_mm = 0.0;       ///< arc length from the first point; in [0, length)
+  double distance_mm = 0.0;
+  int segment = -1;          ///< chord from point `segment` to the next
+  double ratio = 0.0;        ///< position on that chord, 0..1
+  Eigen::Vector3d foot_mm = Eigen::Vector3d::Zero();
+};
+
+/// Arc-length view of a contour: position, tangent and normal at s, nearest foot of a point.
+/// Nearest foot by a bounding-box tree over the chords: O(log n) a query; thread-safe after construction.
+class Curve {
+ public:
+  /// Needs at least two distinct points; throws Error(kBug) otherwise. Copies the contour.
+  explicit Curve(const Contour& contour);
+
+  [[nodiscard]] double length_mm() const { return arc_mm_.back(); }
+  [[nodiscard]] bool closed() const { return contour_.closed; }
+  [[nodiscard]] const Contour& contour() const { return contour_; }
+  /// Arc length of point i of the contour.
+  [[nodiscard]] double arc_of_point_mm(int i) const { return arc_mm_[static_cast<std::size_t>(i)]; }
+  /// Brings s into [0, length) on a closed curve, clamps it to the ends of an open one.
+  [[nodiscard]] double wrap_mm(double arc_mm) const;
+  /// Signed shortest way along the curve from a to b; mm.
+  [[nodiscard]] double arc_between_mm(double from_mm, double to_mm) const;
+  [[nodiscard]] Eigen::Vector3d point_mm(double arc_mm) const;
+  [[nodiscard]] Eigen::Vector3d tangent(double arc_mm) const;  ///< unit chord direction
+  [[nodiscard]] Eigen::Vector3d normal(double arc_mm) const;   ///< unit; interpolated; zero when the contour has none
+  [[nodiscard]] CurveFoot nearest(const Eigen::Vector3d& query_mm) const;
+
+ private:
+  struct Box {
+    Eigen::Vector3d low, high;
+    int left = -1, right = -1, first = 0, last = 0;
+  };
+  struct Locus {
+    std::size_t segment;
+    double ratio;
+  };
+  int build(int first, int last);
+  [[nodiscard]] Locus locate(double arc_mm) const;
+  [[nodiscard]] const Eigen::Vector3d& end_of(std::size_t segment) const;
+
+  Contour contour_;
+  std::vector<double> arc_mm_;  // arc length at each point, then the total length
+  std::vector<Box> boxes_;
+};
+
+/// Equally spaced points (first point kept), at most step_mm apart; normals interpolated and renormalised.
+[[nodiscard]] Contour resample(const Contour& contour, double step_mm);
+
+/// Radius of curvature at each point: circle fitted to the points within +-window_mm of arc (not three points, whose
+/// noise a short chord magnifies); straight runs answer 1e9. mm.
+[[nodiscard]] std::vector<double> bend_radius_mm(const Contour& contour, double window_mm);
+
+}  // namespace arris
