@@ -19,27 +19,37 @@ if(ARRIS_CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${ARRIS_CCACHE})
 endif()
 
-# arris_module(name SOURCES .. [USES ..] [HIDES ..])
+# arris_module(name [FOLDERS ..] [EXCLUDE ..] [USES ..] [HIDES ..]): the .cpp files of the folder (and of FOLDERS)
 #   USES   linked PUBLIC: our own targets and Eigen, what headers may show
 #   HIDES  linked PRIVATE: third-party libraries that stay in .cpp files
 function(arris_module name)
-  cmake_parse_arguments(M "" "" "SOURCES;USES;HIDES" ${ARGN})
-  add_library(arris_${name} STATIC ${M_SOURCES})
+  cmake_parse_arguments(M "" "" "FOLDERS;EXCLUDE;USES;HIDES" ${ARGN})
+  set(patterns *.cpp)
+  foreach(folder ${M_FOLDERS})
+    list(APPEND patterns ${folder}/*.cpp)
+  endforeach()
+  file(GLOB sources CONFIGURE_DEPENDS ${patterns})
+  foreach(file ${M_EXCLUDE})
+    list(REMOVE_ITEM sources ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+  endforeach()
+  add_library(arris_${name} STATIC ${sources})
   add_library(arris::${name} ALIAS arris_${name})
   target_include_directories(arris_${name} PUBLIC ${PROJECT_SOURCE_DIR})
   target_link_libraries(arris_${name} PUBLIC ${M_USES} PRIVATE arris_warnings ${M_HIDES})
 endfunction()
 
-# arris_tests(name [LABEL fast] [TIMEOUT 300] SOURCES .. LINKS ..): one GoogleTest program, tests prefixed "name."
+# arris_tests(name [LABEL fast] [TIMEOUT 300] LINKS ..): the folder's .cpp files as one GoogleTest program,
+# tests prefixed "name."
 function(arris_tests name)
-  cmake_parse_arguments(T "" "LABEL;TIMEOUT" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(T "" "LABEL;TIMEOUT" "LINKS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   if(NOT T_LABEL)
     set(T_LABEL fast)
   endif()
   if(NOT T_TIMEOUT)
     set(T_TIMEOUT 300)
   endif()
-  add_executable(test_${name} ${T_SOURCES})
+  add_executable(test_${name} ${sources})
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(test_${name} PRIVATE ${T_LINKS} GTest::gtest_main arris_warnings)
   target_compile_definitions(test_${name} PRIVATE ARRIS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
