@@ -13,6 +13,10 @@ if(ARRIS_SANITIZE)
     add_compile_definitions(ARRIS_PARALLEL_JTHREAD) # Debian's TBB is not instrumented
   endif()
 endif()
+if(ARRIS_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+  add_custom_target(arris_fuzz_all)
+endif()
 
 find_program(ARRIS_CCACHE ccache)
 if(ARRIS_CCACHE)
@@ -39,7 +43,8 @@ function(arris_module name)
 endfunction()
 
 # arris_tests(name [LABEL fast] [TIMEOUT 300] LINKS ..): the folder's .cpp files as one GoogleTest program,
-# tests prefixed "name."
+# tests prefixed "name.". A suite whose name begins with Slow or Soak is labelled slow, or slow and soak, whatever LABEL
+# says; a soak test reads ARRIS_SOAK and runs a twentieth of its count unless that is 1.
 function(arris_tests name)
   cmake_parse_arguments(T "" "LABEL;TIMEOUT" "LINKS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
@@ -54,6 +59,28 @@ function(arris_tests name)
   target_link_libraries(test_${name} PRIVATE ${T_LINKS} GTest::gtest_main arris_warnings)
   target_compile_definitions(test_${name} PRIVATE ARRIS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                                   ARRIS_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
-                       PROPERTIES LABELS ${T_LABEL} TIMEOUT ${T_TIMEOUT})
+  _arris_discover(${name} "-Slow*:*/Slow*:Soak*:*/Soak*" "${T_LABEL}" ${T_TIMEOUT})
+  _arris_discover(${name} "Slow*:*/Slow*" "slow" 600)
+  _arris_discover(${name} "Soak*:*/Soak*" "slow\\;soak" 7200)
+endfunction()
+
+# One ctest test a GoogleTest case that the filter picks. COST orders a parallel run: fast tests begin first.
+function(_arris_discover name filter label timeout)
+  set(cost 1)
+  if(label STREQUAL "fast")
+    set(cost 100)
+  endif()
+  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." TEST_FILTER "${filter}" DISCOVERY_TIMEOUT 60
+                       PROPERTIES LABELS "${label}" TIMEOUT ${timeout} COST ${cost})
+endfunction()
+
+# arris_fuzz(name SOURCE LINKS ..): a libFuzzer program under fuzz/ of the build folder (preset fuzz, clang).
+function(arris_fuzz name source)
+  cmake_parse_arguments(F "" "" "LINKS" ${ARGN})
+  add_executable(fuzz_${name} ${source})
+  target_include_directories(fuzz_${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(fuzz_${name} PRIVATE ${F_LINKS} arris_warnings)
+  target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
+  set_target_properties(fuzz_${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/fuzz)
+  add_dependencies(arris_fuzz_all fuzz_${name})
 endfunction()
