@@ -32,7 +32,8 @@ void parallel_for(std::size_t count, std::size_t chunk, int threads,
       failures[c] = std::current_exception();
     }
   };
-  const int workers = std::min<int>(thread_count(threads), static_cast<int>(std::min<std::size_t>(chunks, 1024)));
+  const int workers =
+      std::min<int>(thread_count(threads), static_cast<int>(std::min<std::size_t>(chunks, 1024)));
   if (workers <= 1) {
     for (std::size_t c = 0; c < chunks; ++c) run_chunk(c);
   } else {
