@@ -1,0 +1,179 @@
+#include "acquisition/geometry/polyline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "acquisition/types/error.hpp"
+
+namespace arris {
+namespace {
+
+constexpr int kLeafChords = 4;
+constexpr double kNoDistance = std::numeric_limits<double>::infinity();
+
+double box_distance2_mm2(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+                         const Eigen::Vector3d& query_mm) {
+  return (low - query_mm).cwiseMax(query_mm - high).cwiseMax(0.0).squaredNorm();
+}
+
+}  // namespace
+
+Curve::Curve(const Contour& contour) : contour_(contour) {
+  const std::size_t count = contour_.points_mm.size();
+  if (count < 3) contour_.closed = false;  // two points enclose nothing: their chord is walked once
+  if (!contour_.normals.empty() && contour_.normals.size() != count)
+    throw Error(Fault::kBug, "Curve: " + std::to_string(contour_.normals.size()) + " normals for " +
+                                 std::to_string(count) + " points");
+  const std::size_t segments = count == 0 ? 0 : count - (contour_.closed ? 0 : 1);
+  arc_mm_.assign(1, 0.0);
+  for (std::size_t i = 0; i < segments; ++i)
+    arc_mm_.push_back(arc_mm_.back() + (end_of(i) - contour_.points_mm[i]).norm());
+  if (!(arc_mm_.back() > 0.0) || !std::isfinite(arc_mm_.back()))
+    throw Error(Fault::kBug, "Curve: contour " + std::to_string(contour_.id) + " has " +
+                                 std::to_string(count) +
+                                 " points and no length; need two distinct finite points");
+  boxes_.reserve(2 * segments / kLeafChords + 2);
+  build(0, static_cast<int>(segments));
+}
+
+const Eigen::Vector3d& Curve::end_of(std::size_t segment) const {
+  return segment + 1 < contour_.points_mm.size() ? contour_.points_mm[segment + 1]
+                                                 : contour_.points_mm.front();
+}
+
+int Curve::build(int first, int last) {
+  const int id = static_cast<int>(boxes_.size());
+  boxes_.emplace_back();
+  Box box;
+  box.first = first;
+  box.last = last;
+  if (last - first <= kLeafChords) {
+    box.low = box.high = contour_.points_mm[static_cast<std::size_t>(first)];
+    for (int i = first; i < last; ++i) {
+      const Eigen::Vector3d& start_mm = contour_.points_mm[static_cast<std::size_t>(i)];
+      const Eigen::Vector3d& end_mm = end_of(static_cast<std::size_t>(i));
+      box.low = box.low.cwiseMin(start_mm).cwiseMin(end_mm);
+      box.high = box.high.cwiseMax(start_mm).cwiseMax(end_mm);
+    }
+  } else {
+    const int middle = first + (last - first) / 2;
+    box.left = build(first, middle);
+    box.right = build(middle, last);
+    const Box& left = boxes_[static_cast<std::size_t>(box.left)];
+    const Box& right = boxes_[static_cast<std::size_t>(box.right)];
+    box.low = left.low.cwiseMin(right.low);
+    box.high = left.high.cwiseMax(right.high);
+  }
+  boxes_[static_cast<std::size_t>(id)] = box;
+  return id;
+}
+
+double Curve::wrap_mm(double arc_mm) const {
+  const double length = length_mm();
+  if (!closed()) return std::clamp(arc_mm, 0.0, length);
+  const double wrapped = arc_mm - std::floor(arc_mm / length) * length;
+  return wrapped >= 0.0 && wrapped < length ? wrapped : 0.0;
+}
+
+double Curve::arc_between_mm(double from_mm, double to_mm) const {
+  const double way_mm = wrap_mm(to_mm) - wrap_mm(from_mm);
+  if (!closed()) return way_mm;
+  if (way_mm > 0.5 * length_mm()) return way_mm - length_mm();
+  if (way_mm <= -0.5 * length_mm()) return way_mm + length_mm();
+  return way_mm;
+}
+
+Curve::Locus Curve::locate(double arc_mm) const {
+  const double s_mm = wrap_mm(arc_mm);
+  // The chord that starts at or before s and has length; at the far end, the last chord that has length.
+  const auto after = s_mm < length_mm() ? std::upper_bound(arc_mm_.begin(), arc_mm_.end(), s_mm)
+                                        : std::lower_bound(arc_mm_.begin(), arc_mm_.end(), s_mm);
+  const auto segment = static_cast<std::size_t>(after - arc_mm_.begin()) - 1;
+  const double ratio = (s_mm - arc_mm_[segment]) / (arc_mm_[segment + 1] - arc_mm_[segment]);
+  return {segment, std::clamp(ratio, 0.0, 1.0)};
+}
+
+Eigen::Vector3d Curve::point_mm(double arc_mm) const {
+  const Locus at = locate(arc_mm);
+  const Eigen::Vector3d& start_mm = contour_.points_mm[at.segment];
+  if (at.ratio == 1.0) return end_of(at.segment);
+  return start_mm + at.ratio * (end_of(at.segment) - start_mm);
+}
+
+Eigen::Vector3d Curve::tangent(double arc_mm) const {
+  const Locus at = locate(arc_mm);
+  return (end_of(at.segment) - contour_.points_mm[at.segment]).normalized();
+}
+
+Eigen::Vector3d Curve::normal(double arc_mm) const {
+  if (contour_.normals.empty()) return Eigen::Vector3d::Zero();
+  const Locus at = locate(arc_mm);
+  const Eigen::Vector3d& start = contour_.normals[at.segment];
+  const Eigen::Vector3d& end = contour_.normals[(at.segment + 1) % contour_.normals.size()];
+  const Eigen::Vector3d between = (1.0 - at.ratio) * start + at.ratio * end;
+  return between.norm() > 1e-9 ? between.normalized() : start;
+}
+
+CurveFoot Curve::nearest(const Eigen::Vector3d& query_mm) const {
+  CurveFoot best;
+  double best_mm2 = kNoDistance;
+  const auto try_chord = [&](int i) {
+    const Eigen::Vector3d& start_mm = contour_.points_mm[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d chord_mm = end_of(static_cast<std::size_t>(i)) - start_mm;
+    const double chord_mm2 = chord_mm.squaredNorm();
+    const double ratio =
+        chord_mm2 > 0.0 ? std::clamp(chord_mm.dot(query_mm - start_mm) / chord_mm2, 0.0, 1.0) : 0.0;
+    const Eigen::Vector3d foot_mm = start_mm + ratio * chord_mm;
+    const double distance_mm2 = (query_mm - foot_mm).squaredNorm();
+    if (!(distance_mm2 < best_mm2) && !(distance_mm2 == best_mm2 && i < best.segment)) return;
+    best_mm2 = distance_mm2;
+    best.segment = i;
+    best.ratio = ratio;
+    best.foot_mm = foot_mm;
+  };
+  // Nearer child first; a box as far as the best is still opened, so that the lower chord wins a tie.
+  const auto visit = [&](const auto& self, int id) -> void {
+    const Box& box = boxes_[static_cast<std::size_t>(id)];
+    if (box_distance2_mm2(box.low, box.high, query_mm) > best_mm2 * (1.0 + 1e-12)) return;
+    if (box.left < 0) {
+      for (int i = box.first; i < box.last; ++i) try_chord(i);
+      return;
+    }
+    const Box& left = boxes_[static_cast<std::size_t>(box.left)];
+    const Box& right = boxes_[static_cast<std::size_t>(box.right)];
+    const bool right_first =
+        box_distance2_mm2(right.low, right.high, query_mm) < box_distance2_mm2(left.low, left.high, query_mm);
+    self(self, right_first ? box.right : box.left);
+    self(self, right_first ? box.left : box.right);
+  };
+  visit(visit, 0);
+  if (best.segment < 0) throw Error(Fault::kBug, "Curve::nearest: the query is not finite");
+  const auto segment = static_cast<std::size_t>(best.segment);
+  best.distance_mm = std::sqrt(best_mm2);
+  best.arc_mm = wrap_mm(arc_mm_[segment] + best.ratio * (arc_mm_[segment + 1] - arc_mm_[segment]));
+  return best;
+}
+
+Contour resample(const Contour& contour, double step_mm) {
+  if (!(step_mm > 0.0))
+    throw Error(Fault::kBug, "resample: step_mm = " + std::to_string(step_mm) + ", need > 0");
+  const Curve curve(contour);
+  const double steps = std::ceil(curve.length_mm() / step_mm * (1.0 - 1e-12));
+  if (!(steps < 1e8))
+    throw Error(Fault::kBug, "resample: step_mm = " + std::to_string(step_mm) + " is too fine");
+  const int count = std::max(static_cast<int>(steps), curve.closed() ? 3 : 1);
+  const int points = curve.closed() ? count : count + 1;
+  Contour even;
+  even.id = contour.id;
+  even.closed = curve.closed();
+  even.source = contour.source;
+  for (int i = 0; i < points; ++i) {
+    const double arc_mm = i == count ? curve.length_mm() : curve.length_mm() * i / count;
+    even.points_mm.push_back(curve.point_mm(arc_mm));
+    if (!contour.normals.empty()) even.normals.push_back(curve.normal(arc_mm));
+  }
+  return even;
+}
+
+}  // namespace arris
