@@ -14,8 +14,8 @@ struct Neighbour {
   double distance2_mm2 = 0.0;
 };
 
-/// Nearest points of a fixed set; exact, safe to query from several threads. Build O(N log N), query O(log N).
-/// FLANN's single kd-tree index inside, in double; ties are broken by the lower index.
+/// Nearest points of a fixed set; exact, safe to query from several threads. Build O(N log N), query O(log
+/// N). FLANN's single kd-tree index inside, in double; ties are broken by the lower index.
 class NearestPoints {
  public:
   /// Copies the points; an empty set is allowed and answers every query with nothing.

@@ -10,15 +10,15 @@ namespace arris {
 
 /// The plane through each point's neighbourhood.
 struct LocalPlanes {
-  std::vector<Eigen::Vector3d> normals;   ///< unit, sign arbitrary until oriented
-  std::vector<double> spacing_mm;         ///< local point spacing: sqrt(pi r_k^2 / k), r_k distance to neighbour k
-  double noise_sigma_mm = 0.0;            ///< robust (MAD) residual of points to their plane, normal direction
+  std::vector<Eigen::Vector3d> normals;  ///< unit, sign arbitrary until oriented
+  std::vector<double> spacing_mm;  ///< local point spacing: sqrt(pi r_k^2 / k), r_k distance to neighbour k
+  double noise_sigma_mm = 0.0;     ///< robust (MAD) residual of points to their plane, normal direction
   double spacing_median_mm = 0.0;
 };
 
 /// PCA normals over the k nearest points (k >= 3). Cost O(N k log N); same bytes for any thread count.
-[[nodiscard]] LocalPlanes fit_local_planes(std::span<const Eigen::Vector3d> points_mm, const NearestPoints& tree,
-                                           int k, int threads);
+[[nodiscard]] LocalPlanes fit_local_planes(std::span<const Eigen::Vector3d> points_mm,
+                                           const NearestPoints& tree, int k, int threads);
 
 /// Turns each normal towards `seen_from_mm` (a point on the air side, same frame).
 void orient_towards(std::span<const Eigen::Vector3d> points_mm, const Eigen::Vector3d& seen_from_mm,

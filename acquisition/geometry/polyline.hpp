@@ -9,10 +9,10 @@ namespace arris {
 
 /// Where a point falls on a polyline.
 struct CurveFoot {
-  double arc_mm = 0.0;       ///< arc length from the first point; in [0, length)
+  double arc_mm = 0.0;  ///< arc length from the first point; in [0, length)
   double distance_mm = 0.0;
-  int segment = -1;          ///< chord from point `segment` to the next
-  double ratio = 0.0;        ///< position on that chord, 0..1
+  int segment = -1;    ///< chord from point `segment` to the next
+  double ratio = 0.0;  ///< position on that chord, 0..1
   Eigen::Vector3d foot_mm = Eigen::Vector3d::Zero();
 };
 
@@ -34,7 +34,8 @@ class Curve {
   [[nodiscard]] double arc_between_mm(double from_mm, double to_mm) const;
   [[nodiscard]] Eigen::Vector3d point_mm(double arc_mm) const;
   [[nodiscard]] Eigen::Vector3d tangent(double arc_mm) const;  ///< unit chord direction
-  [[nodiscard]] Eigen::Vector3d normal(double arc_mm) const;   ///< unit; interpolated; zero when the contour has none
+  [[nodiscard]] Eigen::Vector3d normal(
+      double arc_mm) const;  ///< unit; interpolated; zero when the contour has none
   [[nodiscard]] CurveFoot nearest(const Eigen::Vector3d& query_mm) const;
 
  private:
@@ -58,8 +59,8 @@ class Curve {
 /// Equally spaced points (first point kept), at most step_mm apart; normals interpolated and renormalised.
 [[nodiscard]] Contour resample(const Contour& contour, double step_mm);
 
-/// Radius of curvature at each point: circle fitted to the points within +-window_mm of arc (not three points, whose
-/// noise a short chord magnifies); straight runs answer 1e9. mm.
+/// Radius of curvature at each point: circle fitted to the points within +-window_mm of arc (not three
+/// points, whose noise a short chord magnifies); straight runs answer 1e9. mm.
 [[nodiscard]] std::vector<double> bend_radius_mm(const Contour& contour, double window_mm);
 
 }  // namespace arris

@@ -10,18 +10,18 @@ namespace arris {
 
 /// The nearest point of a mesh.
 struct SurfacePoint {
-  std::int32_t triangle = -1;                           ///< -1: nothing within the radius
-  Eigen::Vector3d foot_mm = Eigen::Vector3d::Zero();    ///< nearest point of the mesh, in its frame
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();    ///< pseudo-normal there (face, edge or vertex), unit
+  std::int32_t triangle = -1;                         ///< -1: nothing within the radius
+  Eigen::Vector3d foot_mm = Eigen::Vector3d::Zero();  ///< nearest point of the mesh, in its frame
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< pseudo-normal there (face, edge or vertex), unit
   Eigen::Vector3d barycentric = Eigen::Vector3d::Zero();
-  double distance_mm = 0.0;                             ///< >= 0
-  double signed_mm = 0.0;  ///< positive outside the material; sign by the angle-weighted pseudo-normal
+  double distance_mm = 0.0;  ///< >= 0
+  double signed_mm = 0.0;    ///< positive outside the material; sign by the angle-weighted pseudo-normal
   bool on_border = false;  ///< the foot lies on a one-face edge: the distance is to an edge, not to the face
 };
 
-/// Nearest point and signed distance to a fixed triangle mesh; exact, thread-safe. Embree inside (float tree about
-/// the mesh's centre), the nearest triangle's foot recomputed in double.
-/// Sign: Baerentzen and Aanaes, IEEE TVCG 11(3), 2005: angle-weighted pseudo-normals, so edges never flip it.
+/// Nearest point and signed distance to a fixed triangle mesh; exact, thread-safe. Embree inside (float tree
+/// about the mesh's centre), the nearest triangle's foot recomputed in double. Sign: Baerentzen and Aanaes,
+/// IEEE TVCG 11(3), 2005: angle-weighted pseudo-normals, so edges never flip it.
 class SurfaceQuery {
  public:
   /// Copies the mesh. Degenerate triangles are skipped. Build O(n log n).

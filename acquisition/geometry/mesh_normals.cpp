@@ -1,0 +1,137 @@
+#include "acquisition/geometry/mesh_normals.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/types/error.hpp"
+
+namespace arris {
+namespace {
+
+constexpr double kFlatRatio = 1e-12;  // height over longest edge, below which a triangle has no direction
+
+std::size_t at(std::int32_t index) {
+  return static_cast<std::size_t>(index);
+}
+
+void check_indices(const TriangleMesh& mesh) {
+  const auto count = static_cast<std::int64_t>(mesh.vertices_mm.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::int32_t v : mesh.triangles[t])
+      if (v < 0 || v >= count)
+        throw Error(Fault::kBug, "triangle " + std::to_string(t) + " names vertex " + std::to_string(v) +
+                                     " of " + std::to_string(count));
+}
+
+void number_edges(const TriangleMesh& mesh, MeshNormals& normals) {
+  struct Side {
+    std::int32_t low, high, triangle;
+    std::int32_t k;
+  };
+  std::vector<Side> sides;
+  sides.reserve(3 * mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::int32_t k = 0; k < 3; ++k) {
+      const std::int32_t a = mesh.triangles[t][at(k)];
+      const std::int32_t b = mesh.triangles[t][at((k + 1) % 3)];
+      sides.push_back({std::min(a, b), std::max(a, b), static_cast<std::int32_t>(t), k});
+    }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    if (a.low != b.low) return a.low < b.low;
+    if (a.high != b.high) return a.high < b.high;
+    return a.triangle != b.triangle ? a.triangle < b.triangle : a.k < b.k;
+  });
+  normals.edge_of.resize(mesh.triangles.size());
+  normals.vertex_is_border.assign(mesh.vertices_mm.size(), 0);
+  for (std::size_t first = 0; first < sides.size();) {
+    std::size_t last = first;
+    const auto id = static_cast<std::int32_t>(normals.edge_is_border.size());
+    for (;
+         last < sides.size() && sides[last].low == sides[first].low && sides[last].high == sides[first].high;
+         ++last)
+      normals.edge_of[at(sides[last].triangle)][at(sides[last].k)] = id;
+    const bool border = last - first == 1;
+    normals.edge_is_border.push_back(border ? 1 : 0);
+    if (border)
+      normals.vertex_is_border[at(sides[first].low)] = normals.vertex_is_border[at(sides[first].high)] = 1;
+    first = last;
+  }
+}
+
+void face_normals(const TriangleMesh& mesh, MeshNormals& normals) {
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Eigen::Vector3d ab_mm = mesh.vertices_mm[at(b)] - mesh.vertices_mm[at(a)];
+    const Eigen::Vector3d ac_mm = mesh.vertices_mm[at(c)] - mesh.vertices_mm[at(a)];
+    const Eigen::Vector3d cross_mm2 = ab_mm.cross(ac_mm);
+    const double longest_mm2 =
+        std::max({ab_mm.squaredNorm(), ac_mm.squaredNorm(), (ac_mm - ab_mm).squaredNorm()});
+    const bool flat = !(cross_mm2.norm() > kFlatRatio * longest_mm2);
+    normals.degenerate.push_back(flat ? 1 : 0);
+    normals.face.push_back(flat ? Eigen::Vector3d::Zero() : cross_mm2.normalized());
+  }
+}
+
+std::vector<Eigen::Vector3d> sums_at_edges(const MeshNormals& normals) {
+  std::vector<Eigen::Vector3d> sums(normals.edge_is_border.size(), Eigen::Vector3d::Zero());
+  for (std::size_t t = 0; t < normals.face.size(); ++t)
+    for (const std::int32_t edge : normals.edge_of[t]) sums[at(edge)] += normals.face[t];
+  return sums;
+}
+
+// A triangle without area hides a T-junction: the faces beyond it meet at its edges. With their mean as its
+// normal the pseudo-normals there still see both sides. A few rounds reach through strips of such triangles.
+void fill_flat_faces(MeshNormals& normals) {
+  if (std::find(normals.degenerate.begin(), normals.degenerate.end(), 1) == normals.degenerate.end()) return;
+  for (int round = 0; round < 4; ++round) {
+    const std::vector<Eigen::Vector3d> sums = sums_at_edges(normals);
+    std::vector<Eigen::Vector3d> next = normals.face;
+    for (std::size_t t = 0; t < normals.face.size(); ++t) {
+      if (normals.degenerate[t] == 0) continue;
+      Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+      for (const std::int32_t edge : normals.edge_of[t]) mean += sums[at(edge)] - normals.face[t];
+      if (mean.norm() > 1e-9) next[t] = mean.normalized();
+    }
+    normals.face = std::move(next);
+  }
+}
+
+void vertex_normals(const TriangleMesh& mesh, MeshNormals& normals) {
+  normals.vertex.assign(mesh.vertices_mm.size(), Eigen::Vector3d::Zero());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t v = at(mesh.triangles[t][k]);
+      const Eigen::Vector3d one_mm =
+          mesh.vertices_mm[at(mesh.triangles[t][(k + 1) % 3])] - mesh.vertices_mm[v];
+      const Eigen::Vector3d two_mm =
+          mesh.vertices_mm[at(mesh.triangles[t][(k + 2) % 3])] - mesh.vertices_mm[v];
+      // To single precision, so that the last bit of atan2, which depends on the CPU's instructions, does not
+      // matter.
+      const auto angle_rad = static_cast<float>(std::atan2(one_mm.cross(two_mm).norm(), one_mm.dot(two_mm)));
+      normals.vertex[v] += static_cast<double>(angle_rad) * normals.face[t];
+    }
+}
+
+void normalise(std::vector<Eigen::Vector3d>& vectors) {
+  for (Eigen::Vector3d& v : vectors) {
+    const double length = v.norm();
+    if (length > 1e-12) v /= length;
+  }
+}
+
+}  // namespace
+
+MeshNormals mesh_normals(const TriangleMesh& mesh) {
+  check_indices(mesh);
+  MeshNormals normals;
+  number_edges(mesh, normals);
+  face_normals(mesh, normals);
+  fill_flat_faces(normals);
+  normals.edge = sums_at_edges(normals);
+  vertex_normals(mesh, normals);
+  normalise(normals.edge);
+  normalise(normals.vertex);
+  return normals;
+}
+
+}  // namespace arris

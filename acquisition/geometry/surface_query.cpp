@@ -1,0 +1,240 @@
+#include "acquisition/geometry/surface_query.hpp"
+
+#include <embree3/rtcore.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "acquisition/geometry/mesh_normals.hpp"
+#include "acquisition/types/error.hpp"
+
+namespace arris {
+namespace {
+
+// Rounding to float moves vertices, boxes and the query by at most 2^-24 of their size each, the box distance
+// by a few times that. Sixteen roundings are allowed for, so that the float tree never hides the nearest
+// triangle.
+constexpr double kFloatSlackRatio = 1e-6;
+// A foot this near to an edge, in parts of the triangle's longest edge, is on it: the edge's normal decides
+// the side.
+constexpr double kOnEdgeRatio = 1e-9;
+
+struct Foot {
+  Eigen::Vector3d foot_mm;
+  Eigen::Vector3d barycentric;
+  double distance2_mm2;
+};
+
+Foot foot_at(const std::array<Eigen::Vector3d, 3>& corners_mm, const Eigen::Vector3d& barycentric,
+             const Eigen::Vector3d& query_mm) {
+  const Eigen::Vector3d foot_mm = corners_mm[0] + barycentric[1] * (corners_mm[1] - corners_mm[0]) +
+                                  barycentric[2] * (corners_mm[2] - corners_mm[0]);
+  return {foot_mm, barycentric, (query_mm - foot_mm).squaredNorm()};
+}
+
+// Nearest point of a triangle by its Voronoi regions (Ericson, Real-Time Collision Detection, 2005,
+// section 5.1.5).
+Foot nearest_on_triangle(const std::array<Eigen::Vector3d, 3>& corners_mm, const Eigen::Vector3d& query_mm) {
+  const Eigen::Vector3d ab = corners_mm[1] - corners_mm[0];
+  const Eigen::Vector3d ac = corners_mm[2] - corners_mm[0];
+  const auto answer = [&](double b, double c) {
+    return foot_at(corners_mm, Eigen::Vector3d(1.0 - b - c, b, c), query_mm);
+  };
+  const Eigen::Vector3d ap = query_mm - corners_mm[0];
+  const double d1 = ab.dot(ap);
+  const double d2 = ac.dot(ap);
+  if (d1 <= 0.0 && d2 <= 0.0) return answer(0.0, 0.0);
+  const Eigen::Vector3d bp = query_mm - corners_mm[1];
+  const double d3 = ab.dot(bp);
+  const double d4 = ac.dot(bp);
+  if (d3 >= 0.0 && d4 <= d3) return answer(1.0, 0.0);
+  const Eigen::Vector3d cp = query_mm - corners_mm[2];
+  const double d5 = ab.dot(cp);
+  const double d6 = ac.dot(cp);
+  if (d6 >= 0.0 && d5 <= d6) return answer(0.0, 1.0);
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return answer(d1 / (d1 - d3), 0.0);
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return answer(0.0, d2 / (d2 - d6));
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && d4 >= d3 && d5 >= d6) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return answer(1.0 - w, w);
+  }
+  const double total = va + vb + vc;
+  const double b = std::clamp(vb / total, 0.0, 1.0);
+  return answer(b, std::clamp(vc / total, 0.0, 1.0 - b));
+}
+
+struct Release {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<RTCDeviceTy, Release>;
+using Scene = std::unique_ptr<RTCSceneTy, Release>;
+
+[[noreturn]] void throw_embree(RTCDevice device) {
+  throw Error(Fault::kBug,
+              "Embree error " + std::to_string(rtcGetDeviceError(device)) + " while building a tree");
+}
+
+float float_above(double value) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  if (!(value < 1e18)) return std::numeric_limits<float>::infinity();  // its square must stay a float
+  return std::nextafter(static_cast<float>(std::min(value, kMost)), std::numeric_limits<float>::infinity());
+}
+
+}  // namespace
+
+struct SurfaceQuery::Impl {
+  explicit Impl(const TriangleMesh& mesh_) : mesh(mesh_), normals(mesh_normals(mesh_)) {
+    if (std::find(normals.degenerate.begin(), normals.degenerate.end(), 0) == normals.degenerate.end())
+      return;
+    Eigen::AlignedBox3d box;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      if (normals.degenerate[t] == 0)
+        for (const Eigen::Vector3d& corner_mm : corners(t)) box.extend(corner_mm);
+    centre_mm = box.center();
+    half_extent_mm = 0.5 * box.sizes().maxCoeff();
+    build();
+  }
+
+  [[nodiscard]] std::array<Eigen::Vector3d, 3> corners(std::size_t t) const {
+    const auto& [a, b, c] = mesh.triangles[t];
+    return {mesh.vertices_mm[static_cast<std::size_t>(a)], mesh.vertices_mm[static_cast<std::size_t>(b)],
+            mesh.vertices_mm[static_cast<std::size_t>(c)]};
+  }
+
+  void build();
+  [[nodiscard]] SurfacePoint describe(std::size_t triangle, const Foot& foot,
+                                      const Eigen::Vector3d& query_mm) const;
+
+  TriangleMesh mesh;
+  MeshNormals normals;
+  Eigen::Vector3d centre_mm = Eigen::Vector3d::Zero();
+  double half_extent_mm = 0.0;
+  std::vector<std::int32_t> triangle_of;  // mesh triangle of each triangle in the tree
+  Device device;
+  Scene scene;
+};
+
+void SurfaceQuery::Impl::build() {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (normals.degenerate[t] == 0) triangle_of.push_back(static_cast<std::int32_t>(t));
+  device.reset(rtcNewDevice(nullptr));
+  if (!device) throw_embree(nullptr);
+  scene.reset(rtcNewScene(device.get()));
+  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices_mm.size()));
+  auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), triangle_of.size()));
+  if (vertices == nullptr || indices == nullptr) throw_embree(device.get());
+  for (const Eigen::Vector3d& vertex_mm : mesh.vertices_mm)
+    for (int axis = 0; axis < 3; ++axis) *vertices++ = static_cast<float>(vertex_mm[axis] - centre_mm[axis]);
+  for (const std::int32_t t : triangle_of)
+    for (const std::int32_t v : mesh.triangles[static_cast<std::size_t>(t)])
+      *indices++ = static_cast<unsigned>(v);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene.get(), geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(scene.get());
+  if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE) throw_embree(device.get());
+}
+
+SurfacePoint SurfaceQuery::Impl::describe(std::size_t triangle, const Foot& foot,
+                                          const Eigen::Vector3d& query_mm) const {
+  SurfacePoint answer;
+  answer.triangle = static_cast<std::int32_t>(triangle);
+  answer.foot_mm = foot.foot_mm;
+  answer.barycentric = foot.barycentric;
+  answer.distance_mm = std::sqrt(foot.distance2_mm2);
+  answer.normal = normals.face[triangle];
+
+  const std::array<Eigen::Vector3d, 3> p_mm = corners(triangle);
+  const std::array<double, 3> edge_mm = {(p_mm[1] - p_mm[0]).norm(), (p_mm[2] - p_mm[1]).norm(),
+                                         (p_mm[0] - p_mm[2]).norm()};
+  const double tolerance_mm = kOnEdgeRatio * std::max({edge_mm[0], edge_mm[1], edge_mm[2]});
+  const double area2_mm2 = (p_mm[1] - p_mm[0]).cross(p_mm[2] - p_mm[0]).norm();
+  for (std::size_t k = 0; k < 3;
+       ++k) {  // height of the foot over edge k: its share of the opposite corner's height
+    if (foot.barycentric[static_cast<int>((k + 2) % 3)] * area2_mm2 > tolerance_mm * edge_mm[k]) continue;
+    const auto edge = static_cast<std::size_t>(normals.edge_of[triangle][k]);
+    answer.normal = normals.edge[edge];
+    answer.on_border = answer.on_border || normals.edge_is_border[edge] != 0;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    if ((foot.foot_mm - p_mm[k]).norm() > tolerance_mm) continue;
+    const auto vertex = static_cast<std::size_t>(mesh.triangles[triangle][k]);
+    answer.normal = normals.vertex[vertex];
+    answer.on_border = normals.vertex_is_border[vertex] != 0;
+  }
+  if (answer.normal.squaredNorm() < 0.5)
+    answer.normal = normals.face[triangle];  // faces folded onto each other
+  const bool outside = answer.normal.dot(query_mm - foot.foot_mm) >= 0.0;
+  answer.signed_mm = outside ? answer.distance_mm : -answer.distance_mm;
+  return answer;
+}
+
+namespace {
+
+// What one traversal of the tree carries along; Embree calls visit() for each triangle that may be nearer.
+struct Search {
+  const std::vector<std::int32_t>& triangle_of;
+  const TriangleMesh& mesh;
+  const Eigen::Vector3d& query_mm;
+  double slack_mm;
+  double limit2_mm2;
+  std::int32_t triangle = -1;
+  Foot foot{};
+
+  static bool visit(RTCPointQueryFunctionArguments* args) {
+    Search& search = *static_cast<Search*>(args->userPtr);
+    const std::int32_t t = search.triangle_of[args->primID];
+    const auto& [a, b, c] = search.mesh.triangles[static_cast<std::size_t>(t)];
+    const Foot foot = nearest_on_triangle({search.mesh.vertices_mm[static_cast<std::size_t>(a)],
+                                           search.mesh.vertices_mm[static_cast<std::size_t>(b)],
+                                           search.mesh.vertices_mm[static_cast<std::size_t>(c)]},
+                                          search.query_mm);
+    if (!(foot.distance2_mm2 <= search.limit2_mm2)) return false;
+    if (foot.distance2_mm2 == search.limit2_mm2 && search.triangle >= 0 && t > search.triangle) return false;
+    search.limit2_mm2 = foot.distance2_mm2;
+    search.triangle = t;
+    search.foot = foot;
+    const float radius =
+        float_above(std::sqrt(foot.distance2_mm2) * (1.0 + kFloatSlackRatio) + search.slack_mm);
+    if (!(radius < args->query->radius)) return false;
+    args->query->radius = radius;
+    return true;
+  }
+};
+
+}  // namespace
+
+SurfaceQuery::SurfaceQuery(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>(mesh)) {}
+SurfaceQuery::~SurfaceQuery() = default;
+SurfaceQuery::SurfaceQuery(SurfaceQuery&&) noexcept = default;
+SurfaceQuery& SurfaceQuery::operator=(SurfaceQuery&&) noexcept = default;
+
+SurfacePoint SurfaceQuery::closest(const Eigen::Vector3d& query_mm, double max_distance_mm) const {
+  const Impl& impl = *impl_;
+  if (!impl.scene || !query_mm.allFinite() || !(max_distance_mm >= 0.0)) return {};
+  const Eigen::Vector3d local_mm = query_mm - impl.centre_mm;
+  const double slack_mm = kFloatSlackRatio * (local_mm.cwiseAbs().maxCoeff() + impl.half_extent_mm);
+  Search search{impl.triangle_of, impl.mesh, query_mm, slack_mm, max_distance_mm * max_distance_mm};
+  RTCPointQuery query{};
+  query.x = static_cast<float>(local_mm.x());
+  query.y = static_cast<float>(local_mm.y());
+  query.z = static_cast<float>(local_mm.z());
+  query.time = 0.0F;
+  query.radius = float_above(max_distance_mm * (1.0 + kFloatSlackRatio) + slack_mm);
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(impl.scene.get(), &query, &context, &Search::visit, &search);
+  if (search.triangle < 0) return {};
+  return impl.describe(static_cast<std::size_t>(search.triangle), search.foot, query_mm);
+}
+
+}  // namespace arris
