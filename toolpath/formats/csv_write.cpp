@@ -74,7 +74,7 @@ string write_corrected_csv(const ToolPath& nominal, const Correction& correction
     for (double value :
          {corrected.shift_mm, corrected.shift_normal_mm, corrected.shift_across_mm, corrected.sd_normal_mm,
           corrected.sd_across_mm, corrected.sd_along_mm, corrected.sd_axis_rad * kDegPerRad})
-      text += "," + fixed_text(value, kDecimals);
+      text.append(",").append(fixed_text(value, kDecimals));
     text += corrected.from_data ? ",data\n" : ",prior\n";
   }
   return text;
