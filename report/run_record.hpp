@@ -22,16 +22,20 @@ struct InputFile {
   std::string sha256;  ///< lower-case hex
 };
 
-/// One number along a contour, by arc length: the paper's figure 10, before (rigid) and after (chosen method).
+/// One number along a contour, by arc length: the paper's figure 10, before (rigid) and after (chosen
+/// method).
 struct ContourError {
-  std::string contour;              ///< "contour 1"
+  std::string contour;  ///< "contour 1"
   std::vector<double> arc_mm;
-  std::vector<double> rigid_mm;     ///< distance found edge - nominal contour carried rigidly; NaN where no edge was seen
-  std::vector<double> across_mm;    ///< signed, in the surface, of the corrected contour to the found edge; NaN: not seen
-  std::vector<double> normal_mm;    ///< signed, along the surface normal, to the scan; NaN: not seen
+  std::vector<double>
+      rigid_mm;  ///< distance found edge - nominal contour carried rigidly; NaN where no edge was seen
+  std::vector<double>
+      across_mm;  ///< signed, in the surface, of the corrected contour to the found edge; NaN: not seen
+  std::vector<double> normal_mm;  ///< signed, along the surface normal, to the scan; NaN: not seen
 };
 
-/// Statistics of one set of signed deviations, mm (inspection: RMS about zero, sigma about the mean, population form).
+/// Statistics of one set of signed deviations, mm (inspection: RMS about zero, sigma about the mean,
+/// population form).
 struct DeviationStatistics {
   std::size_t count = 0;
   double min_mm = 0, max_mm = 0, mean_mm = 0, rms_mm = 0, sigma_mm = 0, median_mm = 0, p05_mm = 0, p95_mm = 0;
@@ -42,43 +46,45 @@ enum class Verdict { kPass, kFail, kIndeterminate, kNotJudged };
 
 /// How the part lies: `scan_from_cad` with what is known of its quality.
 struct AlignmentSummary {
-  RigidMotion scan_from_cad = RigidMotion::Identity();  ///< file coordinates of the scan (offset included), mm
-  double rms_mm = 0.0;             ///< point to plane, band points, after trimming
-  double overlap_ratio = 0.0;      ///< CAD band points that have a scan partner
+  RigidMotion scan_from_cad =
+      RigidMotion::Identity();  ///< file coordinates of the scan (offset included), mm
+  double rms_mm = 0.0;          ///< point to plane, band points, after trimming
+  double overlap_ratio = 0.0;   ///< CAD band points that have a scan partner
   std::size_t pairs = 0;
-  double runner_up_ratio = 0.0;    ///< score of the second best pose over the best: near 1 is ambiguous
-  std::string side_decided_by;     ///< "normals in the file", "seen_from", "initial pose", "shape"
-  std::string start;               ///< "matching loops", "initial pose"
-  std::vector<std::string> free_directions;     ///< motions the data leave undetermined, in words
-  std::vector<double> covariance_6x6;           ///< row-major, rotation (rad) then translation (mm); empty: unknown
+  double runner_up_ratio = 0.0;  ///< score of the second best pose over the best: near 1 is ambiguous
+  std::string side_decided_by;   ///< "normals in the file", "seen_from", "initial pose", "shape"
+  std::string start;             ///< "matching loops", "initial pose"
+  std::vector<std::string> free_directions;  ///< motions the data leave undetermined, in words
+  std::vector<double> covariance_6x6;  ///< row-major, rotation (rad) then translation (mm); empty: unknown
 };
 
 /// One judged result: the number, its limit, and the words.
 struct Judged {
   Verdict verdict = Verdict::kNotJudged;
-  double value_mm = 0.0;      ///< 2 max|d| (profile, full zone width)
-  double tolerance_mm = 0.0;  ///< full zone width
-  double uncertainty_mm = 0.0;      ///< expanded (k = 2); 0 with uncertainty_stated = false: not stated
+  double value_mm = 0.0;        ///< 2 max|d| (profile, full zone width)
+  double tolerance_mm = 0.0;    ///< full zone width
+  double uncertainty_mm = 0.0;  ///< expanded (k = 2); 0 with uncertainty_stated = false: not stated
   bool uncertainty_stated = false;
-  std::string text;           ///< "as clamped, not judged", "found edge against nominal", ...
+  std::string text;  ///< "as clamped, not judged", "found edge against nominal", ...
 };
 
 /// Everything a run found; the writers read it and compute nothing that is not a summary of it.
 struct RunRecord {
   std::string part_number;
-  std::string version;                  ///< "arris 0.1.0"
+  std::string version;  ///< "arris 0.1.0"
   std::vector<InputFile> inputs;
-  std::string result_hash;              ///< of the run: report/result_hash
-  std::string report_time;              ///< from SOURCE_DATE_EPOCH or the scan file's time; ISO 8601, UTC
-  std::string state;                    ///< "clamped" | "free"
-  std::string role;                     ///< "edge" | "cut"
-  std::string method;                   ///< "rigid" | "subdivision" | ...
-  bool has_toolpath = false;            ///< false for `inspect`
+  std::string result_hash;    ///< of the run: report/result_hash
+  std::string report_time;    ///< from SOURCE_DATE_EPOCH or the scan file's time; ISO 8601, UTC
+  std::string state;          ///< "clamped" | "free"
+  std::string role;           ///< "edge" | "cut"
+  std::string method;         ///< "rigid" | "subdivision" | ...
+  bool has_toolpath = false;  ///< false for `inspect`
 
   // Acquisition
   std::size_t points_read = 0, points_nonfinite = 0, points_outlier = 0, points_used = 0;
   double spacing_mm = 0.0, noise_sigma_mm = 0.0;
-  std::vector<std::string> notes;       ///< acquisition and contour notes in plain words (filled holes, dropped loops)
+  std::vector<std::string>
+      notes;  ///< acquisition and contour notes in plain words (filled holes, dropped loops)
 
   // Registration
   AlignmentSummary alignment;
@@ -90,32 +96,35 @@ struct RunRecord {
     std::string stop;
   };
   std::vector<SegmentSummary> segments;
-  std::vector<std::pair<std::string, double>> stage_residual_mm;  ///< "rigid", "subdivision": rms of the edge pairs
-  double mean_strain_ratio = 0.0;       ///< mean in-surface strain of the field
+  std::vector<std::pair<std::string, double>>
+      stage_residual_mm;           ///< "rigid", "subdivision": rms of the edge pairs
+  double mean_strain_ratio = 0.0;  ///< mean in-surface strain of the field
 
   // Geometry for pictures, scan frame, local to cloud.offset_mm
-  PointCloud cloud;                     ///< the scan as read (cleaned of non-finite points)
-  std::vector<float> deviation_mm;      ///< one a point of `cloud`, after the rigid alignment; NaN: beyond reach
-  TriangleMesh cad;                     ///< CAD frame
+  PointCloud cloud;                 ///< the scan as read (cleaned of non-finite points)
+  std::vector<float> deviation_mm;  ///< one a point of `cloud`, after the rigid alignment; NaN: beyond reach
+  TriangleMesh cad;                 ///< CAD frame
   std::vector<Contour> cad_contours;    ///< accepted, CAD frame
   std::vector<Contour> found_contours;  ///< found in the scan, scan frame local
 
   // Tool path
-  ToolPath nominal_path;                ///< CAD frame
-  Correction correction;                ///< scan frame local
-  std::vector<std::string> refusals;    ///< all reasons of a refused run, correction.reasons included
-  double edge_limit_mm = 0.0;           ///< E = 1 / (density x 50 mm), across the contour
-  double surface_limit_mm = 0.0;        ///< sigma / sqrt(points within 10 mm)
+  ToolPath nominal_path;              ///< CAD frame
+  Correction correction;              ///< scan frame local
+  std::vector<std::string> refusals;  ///< all reasons of a refused run, correction.reasons included
+  double edge_limit_mm = 0.0;         ///< E = 1 / (density x 50 mm), across the contour
+  double surface_limit_mm = 0.0;      ///< sigma / sqrt(points within 10 mm)
 
   // The three results
   double surface_profile_mm = 0.0, contour_profile_mm = 0.0, max_correction_mm = 0.0;  ///< recipe [tolerance]
-  DeviationStatistics as_scanned;       ///< (ii) shape after the rigid alignment
-  DeviationStatistics pulled_back;      ///< (iii) found edge pulled back through the field, or the edge's own error
+  DeviationStatistics as_scanned;  ///< (ii) shape after the rigid alignment
+  DeviationStatistics
+      pulled_back;  ///< (iii) found edge pulled back through the field, or the edge's own error
   Judged judged_as_scanned, judged_pulled_back;
   std::vector<ContourError> contour_errors;
 
   // Robot program
-  std::string program_note;             ///< why there is none, or its file names
+  bool program_written = false;  ///< only when ACCEPTED and a cell is given
+  std::string program_note;      ///< why there is none, or its file names
 
   [[nodiscard]] bool accepted() const { return refusals.empty(); }
   /// Inspection verdict: pulled_back when clamped, as_scanned when free.

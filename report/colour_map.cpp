@@ -1,0 +1,84 @@
+#include "report/colour_map.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "report/number_text.hpp"
+
+namespace arris::report {
+namespace {
+
+constexpr int kStepsBeyond = 4;
+constexpr std::array<Rgb, kStepsBeyond> kAbove = {
+    {{255, 214, 102}, {244, 160, 48}, {214, 98, 28}, {150, 52, 16}}};
+constexpr std::array<Rgb, kStepsBeyond> kBelow = {
+    {{176, 214, 245}, {100, 168, 226}, {42, 112, 190}, {20, 62, 132}}};
+constexpr Rgb kGreenAbove{128, 196, 118}, kGreenBelow{94, 178, 142};
+
+}  // namespace
+
+std::string to_hex(const Rgb& colour) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string text = "#";
+  for (const std::uint8_t part : {colour.red, colour.green, colour.blue}) {
+    text += kDigits[part >> 4U];
+    text += kDigits[part & 15U];
+  }
+  return text;
+}
+
+ColourMap::ColourMap(double tolerance_mm, double limit_mm)
+    : half_zone_mm_(std::max(0.0, 0.5 * tolerance_mm)) {
+  const double limit = limit_mm > half_zone_mm_ ? limit_mm : half_zone_mm_ + 1.0;
+  const auto edge = [&](int k) { return half_zone_mm_ + (limit - half_zone_mm_) * k / kStepsBeyond; };
+  for (int k = kStepsBeyond; k > 0; --k)
+    steps_.push_back({-edge(k), -edge(k - 1), kBelow[static_cast<std::size_t>(k - 1)]});
+  if (half_zone_mm_ > 0.0) {
+    steps_.push_back({-half_zone_mm_, 0.0, kGreenBelow});
+    steps_.push_back({0.0, half_zone_mm_, kGreenAbove});
+  }
+  for (int k = 0; k < kStepsBeyond; ++k)
+    steps_.push_back({edge(k), edge(k + 1), kAbove[static_cast<std::size_t>(k)]});
+}
+
+Rgb ColourMap::colour(double deviation_mm) const {
+  if (!std::isfinite(deviation_mm)) return no_data();
+  if (deviation_mm > limit_mm()) return over_scale();
+  if (deviation_mm < -limit_mm()) return under_scale();
+  // A value on an edge belongs to the step nearer to zero: the zone is closed.
+  if (deviation_mm >= 0.0) {
+    for (const ColourStep& step : steps_)
+      if (step.to_mm > 0.0 && deviation_mm <= step.to_mm) return step.colour;
+  }
+  for (auto step = steps_.rbegin(); step != steps_.rend(); ++step)
+    if (step->from_mm < 0.0 && deviation_mm >= step->from_mm) return step->colour;
+  return no_data();
+}
+
+Rgb ColourMap::over_scale() {
+  return {214, 22, 140};
+}
+Rgb ColourMap::under_scale() {
+  return {26, 8, 48};
+}
+Rgb ColourMap::no_data() {
+  return {217, 217, 217};
+}
+
+ColourMap colour_map_for(std::span<const float> deviation_mm, double tolerance_mm) {
+  std::vector<double> size;
+  for (const float d : deviation_mm)
+    if (std::isfinite(d)) size.push_back(std::abs(static_cast<double>(d)));
+  const double half = std::max(0.0, 0.5 * tolerance_mm);
+  double target = 3.0 * half;
+  if (!size.empty()) {
+    const auto at = size.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(size.size() - 1));
+    std::nth_element(size.begin(), at, size.end());
+    target = std::max(target, *at);
+  }
+  const double step = nice_at_least((target - half) / kStepsBeyond);
+  return ColourMap(tolerance_mm, half + kStepsBeyond * step);
+}
+
+}  // namespace arris::report

@@ -1,0 +1,128 @@
+#include "report/verdict.hpp"
+
+#include <cmath>
+
+#include "report/number_text.hpp"
+
+namespace arris::report {
+namespace {
+
+std::string mm(double value) {
+  return fixed_text(value, 3) + " mm";
+}
+
+Judged start(double max_abs_mm, double tolerance_mm) {
+  Judged judged;
+  judged.value_mm = 2.0 * max_abs_mm;
+  judged.tolerance_mm = tolerance_mm;
+  return judged;
+}
+
+Verdict decide(double y_mm, double t_mm, double u_mm) {
+  if (y_mm + u_mm <= t_mm) return Verdict::kPass;
+  return y_mm - u_mm > t_mm ? Verdict::kFail : Verdict::kIndeterminate;
+}
+
+std::string reason(const Judged& judged) {
+  const std::string y = mm(judged.value_mm), t = mm(judged.tolerance_mm), u = mm(judged.uncertainty_mm);
+  if (!judged.uncertainty_stated)
+    return "2 max|d| = " + y + (judged.verdict == Verdict::kPass ? " is within " : " is over ") + t +
+           " (simple acceptance, U not stated)";
+  if (judged.verdict == Verdict::kPass) return "2 max|d| = " + y + " + U " + u + " is within " + t;
+  if (judged.verdict == Verdict::kFail) return "2 max|d| = " + y + " - U " + u + " is over " + t;
+  return "2 max|d| = " + y + " lies within U " + u + " of the limit " + t;
+}
+
+}  // namespace
+
+Judged judge_profile(double max_abs_mm, double tolerance_mm, std::optional<double> uncertainty_mm,
+                     const std::string& what) {
+  Judged judged = start(max_abs_mm, tolerance_mm);
+  const std::string head = what.empty() ? "" : what + ": ";
+  if (!(tolerance_mm > 0.0)) {
+    judged.text = head + "no tolerance is stated";
+    return judged;
+  }
+  judged.uncertainty_stated = uncertainty_mm.has_value();
+  judged.uncertainty_mm = uncertainty_mm.value_or(0.0);
+  if (!std::isfinite(max_abs_mm) || !std::isfinite(judged.uncertainty_mm)) {
+    judged.verdict = Verdict::kIndeterminate;
+    judged.text =
+        head + (std::isfinite(max_abs_mm) ? "its uncertainty is not known" : "nothing was measured");
+    return judged;
+  }
+  judged.verdict = decide(judged.value_mm, tolerance_mm, judged.uncertainty_mm);
+  judged.text = head + reason(judged);
+  return judged;
+}
+
+Judged not_judged(double max_abs_mm, double tolerance_mm, const std::string& text) {
+  Judged judged = start(max_abs_mm, tolerance_mm);
+  judged.text = text;
+  return judged;
+}
+
+std::string verdict_word(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kPass:
+      return "PASS";
+    case Verdict::kFail:
+      return "FAIL";
+    case Verdict::kIndeterminate:
+      return "INDETERMINATE";
+    case Verdict::kNotJudged:
+      break;
+  }
+  return "NOT JUDGED";
+}
+
+std::string correction_word(const RunRecord& record) {
+  if (!record.accepted()) return "REFUSED";
+  return record.has_toolpath ? "ACCEPTED" : "NOT ASKED FOR";
+}
+
+int run_exit_code(const RunRecord& record) {
+  if (!record.accepted()) return 5;
+  switch (record.inspection_verdict()) {
+    case Verdict::kFail:
+      return 4;
+    case Verdict::kIndeterminate:
+      return 7;
+    case Verdict::kPass:
+    case Verdict::kNotJudged:
+      break;
+  }
+  return 0;
+}
+
+std::vector<std::string> next_steps(const RunRecord& record) {
+  std::vector<std::string> steps;
+  if (!record.accepted()) {
+    steps.push_back("Do not run the robot on this part: no program was written.");
+    steps.push_back("Clear the first reason below, scan the part again and start the run again.");
+    steps.push_back("If it is refused a second time, call the process engineer and show this page.");
+    return steps;
+  }
+  if (record.program_written)
+    steps.push_back("Run the dry-run program first, then the program.");
+  else if (record.has_toolpath)
+    steps.push_back("The corrected path is ready, but no robot program was written.");
+  switch (record.inspection_verdict()) {
+    case Verdict::kFail:
+      steps.push_back("Set the part aside: it is out of tolerance. Tell quality.");
+      break;
+    case Verdict::kIndeterminate:
+      steps.push_back(
+          "Too near the limit to say. Scan again with more points near the edge, or measure by hand.");
+      break;
+    case Verdict::kPass:
+      steps.push_back("Nothing else to do for the inspection.");
+      break;
+    case Verdict::kNotJudged:
+      steps.push_back("The shape is shown but not judged.");
+      break;
+  }
+  return steps;
+}
+
+}  // namespace arris::report
