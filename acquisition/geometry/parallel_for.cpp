@@ -6,22 +6,33 @@
 #include <thread>
 
 #ifndef ARRIS_PARALLEL_JTHREAD
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #endif
 
+#include "acquisition/types/error.hpp"
+
 namespace arris {
 namespace {
 
+// Never more than the machine has: TBB would print a warning, and nothing would be faster.
 int thread_count(int threads) {
-  if (threads > 0) return threads;
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+#ifdef ARRIS_PARALLEL_JTHREAD
+  const int most = std::max(8, static_cast<int>(std::thread::hardware_concurrency()));  // races need company
+#else
+  const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  const int most = std::clamp(static_cast<int>(allowed), 1, std::max(1, tbb::info::default_concurrency()));
+#endif
+  return threads > 0 ? std::min(threads, most) : most;
 }
 
 }  // namespace
 
 void parallel_for(std::size_t count, std::size_t chunk, int threads,
                   const std::function<void(std::size_t, std::size_t)>& body) {
+  if (chunk == 0) throw Error(Fault::kBug, "parallel_for: chunk = 0, need >= 1");
   if (count == 0) return;
   const std::size_t chunks = (count + chunk - 1) / chunk;
   std::vector<std::exception_ptr> failures(chunks);

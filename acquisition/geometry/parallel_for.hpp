@@ -2,14 +2,16 @@
 
 #include <cstddef>
 #include <functional>
+#include <type_traits>
 #include <vector>
 
 namespace arris {
 
 /// Calls body(begin, end) for consecutive chunks of [0, count), on up to `threads` threads (0: all of the
 /// machine). Chunk borders depend on count and chunk alone, never on the thread count, so a body that writes
-/// only its own range gives the same bytes for any number of threads. The first exception of the lowest chunk
-/// is thrown again.
+/// only its own range gives the same bytes for any number of threads. Every chunk runs, then the exception of
+/// the lowest chunk that threw is thrown again. May be called inside a body: an inner call waits on its own
+/// chunks only. Throws Error(kBug) when chunk is 0.
 void parallel_for(std::size_t count, std::size_t chunk, int threads,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
@@ -18,7 +20,8 @@ void parallel_for(std::size_t count, std::size_t chunk, int threads,
 template <class T, class Partial>
 [[nodiscard]] T parallel_sum(std::size_t count, std::size_t chunk, int threads, T zero,
                              const Partial& partial) {
-  const std::size_t chunks = count == 0 ? 0 : (count + chunk - 1) / chunk;
+  static_assert(!std::is_same_v<T, bool>, "vector<bool> packs bits that chunks would share");
+  const std::size_t chunks = chunk == 0 ? 0 : (count + chunk - 1) / chunk;
   std::vector<T> parts(chunks, zero);
   parallel_for(count, chunk, threads,
                [&](std::size_t begin, std::size_t end) { parts[begin / chunk] = partial(begin, end); });

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
@@ -13,8 +14,9 @@ namespace {
 
 using Points = std::span<const Eigen::Vector3d>;
 
-constexpr double kLineRatio = 1e-9;     // second principal spread over the first
-constexpr double kUniqueRatio = 1e-12;  // gap between the two best rotations over the total spread
+constexpr double kLineRatio = 1e-9;       // second principal spread over the first
+constexpr double kRoundingRatio = 1e-14;  // spread that rounding alone makes, over the largest coordinate
+constexpr double kUniqueRatio = 1e-12;    // gap between the two best rotations over the total spread
 
 void check_sizes(Points from_mm, Points to_mm, std::span<const double> weights) {
   if (from_mm.size() != to_mm.size())
@@ -57,7 +59,9 @@ Centred centre(Points from_mm, Points to_mm, std::span<const double> weights) {
 
 // Why the rotation of these points is not determined, or nothing. The spread across the line is summed
 // directly: the second eigenvalue of a covariance carries the rounding of the first, 1e-8 of its spread.
-std::string line_reason(const std::vector<Eigen::Vector3d>& points_mm, const std::vector<double>& weights) {
+// Coordinates far from the origin carry rounding that is no spread either.
+std::string line_reason(const std::vector<Eigen::Vector3d>& points_mm, const Eigen::Vector3d& centre_mm,
+                        const std::vector<double>& weights) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < points_mm.size(); ++i)
     covariance += weights[i] * points_mm[i] * points_mm[i].transpose();
@@ -70,8 +74,10 @@ std::string line_reason(const std::vector<Eigen::Vector3d>& points_mm, const std
     along_mm2 += weights[i] * s_mm * s_mm;
     across_mm2 += weights[i] * (points_mm[i] - s_mm * along).squaredNorm();
   }
-  if (!(along_mm2 > 0.0)) return "the points coincide";
-  if (std::sqrt(across_mm2) < kLineRatio * std::sqrt(along_mm2)) return "the points lie on a line";
+  const double rounding_mm = kRoundingRatio * centre_mm.cwiseAbs().maxCoeff();
+  if (!(std::sqrt(along_mm2) > rounding_mm)) return "the points coincide";
+  if (std::sqrt(across_mm2) <= std::max(kLineRatio * std::sqrt(along_mm2), rounding_mm))
+    return "the points lie on a line";
   return {};
 }
 
@@ -116,8 +122,8 @@ RigidFit fit_rigid(Points from_mm, Points to_mm, std::span<const double> weights
     fit.reason = "a point is not finite";
     return fit;
   }
-  fit.reason = line_reason(pairs.from_mm, pairs.weights);
-  if (fit.usable()) fit.reason = line_reason(pairs.to_mm, pairs.weights);
+  fit.reason = line_reason(pairs.from_mm, pairs.from_centre_mm, pairs.weights);
+  if (fit.usable()) fit.reason = line_reason(pairs.to_mm, pairs.to_centre_mm, pairs.weights);
   if (!fit.usable()) return fit;
 
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(horn_matrix(pairs));

@@ -1,0 +1,250 @@
+#include "acquisition/geometry/surface_query.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+
+#include "acquisition/geometry/parallel_for.hpp"
+#include "acquisition/types/error.hpp"
+#include "tests/geometry/meshes.hpp"
+#include "tests/geometry/random_points.hpp"
+
+namespace arris {
+namespace {
+
+using namespace testing;  // NOLINT: meshes and points of this folder
+
+const Eigen::Vector3d kHalf_mm(30.0, 20.0, 10.0);
+
+// The twin: nearest point of a triangle as the nearest of its plane's foot, if inside, and its three edges.
+double triangle_distance_mm(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                            const Eigen::Vector3d& q) {
+  const auto to_edge = [&](const Eigen::Vector3d& s, const Eigen::Vector3d& e) {
+    const double ratio = std::clamp((e - s).dot(q - s) / (e - s).squaredNorm(), 0.0, 1.0);
+    return (s + ratio * (e - s) - q).norm();
+  };
+  const double edges = std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
+  const Eigen::Vector3d n = (b - a).cross(c - a).normalized();
+  const bool inside = n.cross(b - a).dot(q - a) >= 0.0 && n.cross(c - b).dot(q - b) >= 0.0 &&
+                      n.cross(a - c).dot(q - c) >= 0.0;
+  return inside ? std::abs(n.dot(q - a)) : edges;
+}
+
+double brute_distance_mm(const TriangleMesh& mesh, const Eigen::Vector3d& q) {
+  double best_mm = std::numeric_limits<double>::infinity();
+  for (const auto& [a, b, c] : mesh.triangles)
+    best_mm = std::min(best_mm, triangle_distance_mm(mesh.vertices_mm[static_cast<std::size_t>(a)],
+                                                     mesh.vertices_mm[static_cast<std::size_t>(b)],
+                                                     mesh.vertices_mm[static_cast<std::size_t>(c)], q));
+  return best_mm;
+}
+
+TriangleMesh triangle_soup(int count, unsigned seed) {
+  Random random(seed);
+  TriangleMesh mesh;
+  for (std::int32_t t = 0; t < count; ++t) {
+    const Eigen::Vector3d centre_mm = random.in_cube_mm(100.0);
+    for (int k = 0; k < 3; ++k)
+      mesh.vertices_mm.push_back(centre_mm + random.in_cube_mm(t % 3 == 0 ? 30.0 : 3.0));
+    mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  return mesh;
+}
+
+RigidMotion far_motion(double distance_mm) {
+  RigidMotion motion = RigidMotion::Identity();
+  motion.linear() = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+  motion.translation() = distance_mm * Eigen::Vector3d(0.6, -0.48, 0.64);
+  return motion;
+}
+
+TEST(SurfaceQuery, IsTheBruteForceDistanceNearAndFar) {
+  for (const double far_mm : {0.0, 1e4, 1e6}) {
+    const RigidMotion motion = far_motion(far_mm);
+    for (const TriangleMesh& local : {triangle_soup(300, 1), sphere_mesh(40.0, 3), box_mesh(kHalf_mm)}) {
+      const TriangleMesh mesh = moved(local, motion);
+      const SurfaceQuery surface(mesh);
+      Random random(2);
+      for (int i = 0; i < 1000; ++i) {
+        const double reach_mm = i % 10 == 0 ? 1e5 : i % 2 == 0 ? 200.0 : 45.0;
+        const Eigen::Vector3d query_mm = motion * random.in_cube_mm(reach_mm);
+        const SurfacePoint found = surface.closest(query_mm);
+        const double twin_mm = brute_distance_mm(mesh, query_mm);
+        EXPECT_NEAR(found.distance_mm, twin_mm, 1e-9 + 1e-14 * (far_mm + reach_mm) * reach_mm);
+        EXPECT_NEAR((found.foot_mm - query_mm).norm(), found.distance_mm, 1e-9);
+        EXPECT_NEAR(std::abs(found.signed_mm), found.distance_mm, 0.0);
+      }
+    }
+  }
+}
+
+TEST(SurfaceQuery, FootIsWhereItsBarycentricCoordinatesSay) {
+  const TriangleMesh mesh = triangle_soup(100, 3);
+  const SurfaceQuery surface(mesh);
+  Random random(4);
+  for (int i = 0; i < 500; ++i) {
+    const SurfacePoint found = surface.closest(random.in_cube_mm(150.0));
+    const auto& triangle = mesh.triangles[static_cast<std::size_t>(found.triangle)];
+    Eigen::Vector3d foot_mm = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < 3; ++k)
+      foot_mm +=
+          found.barycentric[static_cast<int>(k)] * mesh.vertices_mm[static_cast<std::size_t>(triangle[k])];
+    EXPECT_LT((foot_mm - found.foot_mm).norm(), 1e-10);
+    EXPECT_GE(found.barycentric.minCoeff(), -1e-12);
+    EXPECT_NEAR(found.barycentric.sum(), 1.0, 1e-12);
+    EXPECT_NEAR(found.normal.norm(), 1.0, 1e-12);
+  }
+}
+
+TEST(SurfaceQuery, SignOfABoxNeverFlips) {
+  Random random(5);
+  for (const double far_mm : {0.0, 5000.0}) {
+    const RigidMotion motion = far_motion(far_mm);
+    const SurfaceQuery surface(moved(box_mesh(kHalf_mm), motion));
+    for (int i = 0; i < 60000; ++i) {
+      // Around corners, edges and faces, at distances from a micrometre to 30 mm.
+      Eigen::Vector3d p_mm = kHalf_mm;
+      const double reach_mm = std::pow(10.0, random.uniform(-3.0, 1.5));
+      for (int axis = 0; axis < 3; ++axis) {
+        if (i % 3 == axis || (i % 2 == 0 && (i + 1) % 3 == axis)) p_mm[axis] *= random.uniform(-1.1, 1.1);
+        if (random.uniform(0.0, 1.0) > 0.3) p_mm[axis] += random.uniform(-reach_mm, reach_mm);
+        if (random.uniform(0.0, 1.0) > 0.5) p_mm[axis] = -p_mm[axis];
+      }
+      const double truth_mm = box_signed_mm(kHalf_mm, p_mm);
+      EXPECT_NEAR(surface.closest(motion * p_mm).signed_mm, truth_mm, 1e-9) << p_mm.transpose();
+    }
+  }
+}
+
+TEST(SurfaceQuery, SignHoldsExactlyAboveTheEdgesOfABox) {
+  // Straight above an edge two faces tie, and one of them is seen edge-on: the case that a face normal gets
+  // wrong.
+  const SurfaceQuery surface(box_mesh(kHalf_mm));
+  Random random(6);
+  for (int i = 0; i < 20000; ++i) {
+    Eigen::Vector3d p_mm(kHalf_mm.x(), random.uniform(-1.0, 1.0) * kHalf_mm.y(), kHalf_mm.z());
+    const double height_mm = std::pow(10.0, random.uniform(-6.0, 2.0));
+    p_mm[i % 2 == 0 ? 0 : 2] += height_mm;
+    const SurfacePoint found = surface.closest(p_mm);
+    EXPECT_GT(found.signed_mm, 0.0);
+    EXPECT_NEAR(found.signed_mm, height_mm, 1e-9);
+    EXPECT_FALSE(found.on_border);
+  }
+}
+
+TEST(SurfaceQuery, MeasuresASphereFromBothSides) {
+  constexpr double kRadius_mm = 50.0;
+  const SurfaceQuery surface(sphere_mesh(kRadius_mm, 5));
+  Random random(7);
+  for (int i = 0; i < 5000; ++i) {
+    const Eigen::Vector3d direction = random.direction();
+    const double r_mm = random.uniform(20.0, 90.0);
+    const SurfacePoint found = surface.closest(r_mm * direction);
+    EXPECT_NEAR(found.signed_mm, r_mm - kRadius_mm, 0.05);  // sagitta of a 2.5 mm chord
+    EXPECT_GT(found.normal.dot(direction), 0.99);
+    EXPECT_FALSE(found.on_border);
+  }
+}
+
+TEST(SurfaceQuery, KnowsTheBorderOfASheet) {
+  const SurfaceQuery surface(sheet_mesh(10.0, 5));
+  const auto at = [&](double x, double y, double z) { return surface.closest(Eigen::Vector3d(x, y, z)); };
+  EXPECT_FALSE(at(1.0, 2.0, 3.0).on_border);
+  EXPECT_FALSE(at(-2.0, -2.0, 3.0).on_border);  // an inner vertex
+  EXPECT_TRUE(at(12.0, 1.0, 1.0).on_border);
+  EXPECT_TRUE(at(12.0, 13.0, -1.0).on_border);  // a corner
+  EXPECT_TRUE(at(10.0, 1.0, 1.0).on_border);    // straight above the rim
+  EXPECT_GT(at(1.0, 2.0, 3.0).signed_mm, 0.0);
+  EXPECT_LT(at(1.0, 2.0, -3.0).signed_mm, 0.0);
+  EXPECT_NEAR(at(12.0, 1.0, 0.5).distance_mm, std::hypot(2.0, 0.5), 1e-12);
+}
+
+TEST(SurfaceQuery, ClosedMeshHasNoBorder) {
+  const SurfaceQuery surface(box_mesh(kHalf_mm));
+  for (const Eigen::Vector3d& q_mm : random_cube_mm(2000, 60.0, 8))
+    EXPECT_FALSE(surface.closest(q_mm).on_border);
+}
+
+TEST(SurfaceQuery, AnswersWithinTheRadiusOnly) {
+  const SurfaceQuery surface(box_mesh(kHalf_mm));
+  const Eigen::Vector3d above_mm(0.0, 0.0, 15.0);
+  EXPECT_EQ(surface.closest(above_mm, 4.999999).triangle, -1);
+  EXPECT_GE(surface.closest(above_mm, 5.0).triangle, 0);
+  EXPECT_GE(surface.closest(Eigen::Vector3d(1.0, 2.0, 10.0), 0.0).triangle, 0);
+  EXPECT_EQ(surface.closest(above_mm, -1.0).triangle, -1);
+}
+
+TEST(SurfaceQuery, TiesGoToTheLowerTriangle) {
+  TriangleMesh mesh = box_mesh(kHalf_mm);
+  mesh.triangles.insert(mesh.triangles.end(), mesh.triangles.begin(),
+                        mesh.triangles.end());  // each face twice
+  const SurfaceQuery surface(mesh);
+  for (const Eigen::Vector3d& q_mm : random_cube_mm(2000, 60.0, 9))
+    EXPECT_LT(surface.closest(q_mm).triangle, 12);
+  const SurfaceQuery once(box_mesh(kHalf_mm));
+  EXPECT_EQ(once.closest(Eigen::Vector3d(0.0, 0.0, 20.0)).triangle, 2);  // on the diagonal of the top
+}
+
+TEST(SurfaceQuery, SeesThroughTrianglesWithoutArea) {
+  // A T-junction on a box edge, closed by a triangle without area, as CAD exports write them.
+  TriangleMesh mesh = box_mesh(kHalf_mm);
+  const auto middle = static_cast<std::int32_t>(mesh.vertices_mm.size());
+  mesh.vertices_mm.push_back(0.5 * (mesh.vertices_mm[5] + mesh.vertices_mm[7]));  // edge +x +z
+  mesh.triangles.back() = {3, 7, middle};                                         // was {3, 7, 5}
+  mesh.triangles.push_back({3, middle, 5});
+  mesh.triangles.push_back({7, 5, middle});  // the needle between them and the top
+  const SurfaceQuery surface(mesh);
+  Random random(10);
+  for (int i = 0; i < 20000; ++i) {
+    Eigen::Vector3d p_mm(kHalf_mm.x(), random.uniform(-1.2, 1.2) * kHalf_mm.y(), kHalf_mm.z());
+    p_mm += random.in_cube_mm(i % 2 == 0 ? 1.0 : 0.01);
+    if (i % 5 == 0) p_mm.x() = kHalf_mm.x();
+    const SurfacePoint found = surface.closest(p_mm);
+    EXPECT_NEAR(found.signed_mm, box_signed_mm(kHalf_mm, p_mm), 1e-9) << p_mm.transpose();
+    EXPECT_FALSE(found.on_border);
+  }
+}
+
+TEST(SurfaceQuery, GivesTheSameBytesForAnyThreadCount) {
+  const TriangleMesh mesh = sphere_mesh(40.0, 4);
+  const std::vector<Eigen::Vector3d> queries_mm = random_cube_mm(20000, 60.0, 11);
+  const auto run = [&](int threads) {
+    const SurfaceQuery surface(mesh);  // built anew: the tree may differ, the answers not
+    std::vector<Eigen::Vector4d> answers(queries_mm.size());
+    parallel_for(queries_mm.size(), 256, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const SurfacePoint found = surface.closest(queries_mm[i]);
+        answers[i] << found.foot_mm + found.normal, found.signed_mm + found.triangle;
+      }
+    });
+    return answers;
+  };
+  const auto one = run(1);
+  for (const int threads : {2, 8})
+    EXPECT_EQ(std::memcmp(run(threads).data(), one.data(), one.size() * sizeof(one[0])), 0) << threads;
+}
+
+TEST(SurfaceQuery, MovesWithTheMesh) {
+  const TriangleMesh mesh = triangle_soup(200, 12);
+  const RigidMotion motion = far_motion(300.0);
+  const SurfaceQuery here(mesh);
+  const SurfaceQuery there(moved(mesh, motion));
+  for (const Eigen::Vector3d& q_mm : random_cube_mm(2000, 150.0, 13))
+    EXPECT_NEAR(here.closest(q_mm).distance_mm, there.closest(motion * q_mm).distance_mm, 1e-9);
+}
+
+TEST(SurfaceQuery, AnswersNothingWhenThereIsNothing) {
+  TriangleMesh flat;
+  flat.vertices_mm.assign(3, Eigen::Vector3d::Ones());
+  flat.triangles = {{0, 1, 2}};
+  for (const TriangleMesh& mesh : {TriangleMesh{}, flat})
+    EXPECT_EQ(SurfaceQuery(mesh).closest(Eigen::Vector3d::Zero()).triangle, -1);
+  const SurfaceQuery box(box_mesh(kHalf_mm));
+  EXPECT_EQ(box.closest(Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())).triangle, -1);
+  flat.triangles = {{0, 1, 3}};
+  EXPECT_THROW(SurfaceQuery{flat}, Error);
+}
+
+}  // namespace
+}  // namespace arris
