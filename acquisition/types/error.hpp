@@ -17,11 +17,11 @@ enum class Fault {
 
 /// The five things an operator needs, in this order; empty parts are left out of the line.
 struct ErrorText {
-  std::string what;    ///< "the scan file ends early"
-  std::string where;   ///< "part7.ply, byte 5120"
-  std::string found;   ///< "820 of 1000 points"
-  std::string needed;  ///< "1000 points, as its header says"
-  std::string next;    ///< "export the scan again"
+  std::string what = {};    ///< "the scan file ends early"
+  std::string where = {};   ///< "part7.ply, byte 5120"
+  std::string found = {};   ///< "820 of 1000 points"
+  std::string needed = {};  ///< "1000 points, as its header says"
+  std::string next = {};    ///< "export the scan again"
 };
 
 /// One line: "what (where): found ..; needed ..; next: ..".

@@ -1,0 +1,275 @@
+#include "registration/coarse_align.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "acquisition/geometry/parallel_for.hpp"
+#include "registration/edge_pairs.hpp"
+#include "registration/loop_match.hpp"
+#include "registration/rigid_icp.hpp"
+
+namespace arris {
+namespace {
+
+constexpr std::size_t kSurfaceSample = 160;
+constexpr std::size_t kEdgeSample = 120;
+constexpr std::size_t kRefined = 4;            // candidates a hypothesis that are refined
+constexpr double kFreeEigenvalueRatio = 1e-4;  // methods: slippage, Gelfand and Guibas 2003
+constexpr double kMirrorBetterRatio = 0.5;
+constexpr double kUnitRatios[] = {25.4, 1000.0, 10.0, 1.0 / 25.4, 1.0 / 1000.0, 0.1};
+
+template <class T>
+std::vector<T> every(const std::vector<T>& values, std::size_t count) {
+  if (values.size() <= count) return values;
+  std::vector<T> chosen(count);
+  for (std::size_t i = 0; i < count; ++i) chosen[i] = values[i * values.size() / count];
+  return chosen;
+}
+
+/// A small copy of the scan for scoring: as it is, with the other side up, or mirrored in x.
+ScanModel hypothesis(const ScanModel& scan, bool flip, bool mirror) {
+  ScanModel light{every(scan.points_mm, 8 * kSurfaceSample), every(scan.normals, 8 * kSurfaceSample),
+                  NearestPoints({}), scan.loops, every(scan.edge_mm, kEdgeSample),
+                  every(scan.edge_normals, kEdgeSample), scan.spacing_mm, scan.noise_sigma_mm, SideKnown::kYes};
+  const auto reflect = [](Eigen::Vector3d& p) { p.x() = -p.x(); };
+  const auto negate = [](Eigen::Vector3d& n) { n = -n; };
+  if (mirror) {
+    for (auto* list : {&light.points_mm, &light.normals, &light.edge_mm, &light.edge_normals})
+      std::for_each(list->begin(), list->end(), reflect);
+    for (Contour& loop : light.loops) {
+      std::for_each(loop.points_mm.begin(), loop.points_mm.end(), reflect);
+      std::for_each(loop.normals.begin(), loop.normals.end(), reflect);
+    }
+  }
+  if (flip) {
+    for (auto* list : {&light.normals, &light.edge_normals}) std::for_each(list->begin(), list->end(), negate);
+    for (Contour& loop : light.loops) std::for_each(loop.normals.begin(), loop.normals.end(), negate);
+  }
+  if (flip != mirror)
+    for (Contour& loop : light.loops) {
+      std::reverse(loop.points_mm.begin(), loop.points_mm.end());
+      std::reverse(loop.normals.begin(), loop.normals.end());
+    }
+  return light;
+}
+
+struct Candidate {
+  RigidMotion scan_from_cad = RigidMotion::Identity();
+  double score_mm = 1e300;
+  bool flip = false, mirror = false;
+  std::vector<std::string> free;
+};
+
+class Search {
+ public:
+  Search(const CadModel& cad, const CoarseAlignOptions& options) : cad_(cad), options_(options) {
+    for (const Curve& curve : cad.contours) {
+      loops_.push_back(curve.contour());
+      const double step_mm = curve.length_mm() / 60.0;
+      for (int i = 0; i < 60; ++i) samples_mm_.push_back(curve.point_mm(i * step_mm));
+      size_mm_ = std::max(size_mm_, curve.length_mm() / 6.28);
+    }
+    cap_mm_ = 0.15 * size_mm_;
+  }
+
+  const std::vector<Contour>& loops() const { return loops_; }
+  double size_mm() const { return size_mm_; }
+  double cap_mm() const { return cap_mm_; }
+
+  /// Capped rms, both ways: contour samples to the scan's edge points, scan points in the band to the surface.
+  double score(const ScanModel& light, const NearestPoints& edges, const RigidMotion& scan_from_cad) const {
+    const double cap2 = cap_mm_ * cap_mm_;
+    double edge2 = 0.0;
+    for (const Eigen::Vector3d& p : samples_mm_) {
+      const Neighbour nearest = edges.nearest(scan_from_cad * p);
+      edge2 += nearest.index < 0 ? cap2 : std::min(cap2, nearest.distance2_mm2);
+    }
+    edge2 /= static_cast<double>(samples_mm_.size());
+    const RigidMotion cad_from_scan = scan_from_cad.inverse();
+    double surface2 = 0.0, count = 0.0;
+    for (std::size_t i = 0; i < light.points_mm.size() && count < double(kSurfaceSample); ++i) {
+      const Eigen::Vector3d x = cad_from_scan * light.points_mm[i];
+      if (pair_edge(cad_, x, options_.band_mm).contour < 0) continue;
+      const SurfacePoint foot = cad_.surface.closest(x, cap_mm_);
+      const bool agrees = foot.triangle >= 0 && foot.normal.dot(cad_from_scan.linear() * light.normals[i]) > 0.5;
+      surface2 += agrees ? std::min(cap2, foot.distance_mm * foot.distance_mm) : cap2;
+      count += 1.0;
+    }
+    surface2 = count >= 10.0 ? surface2 / count : cap2;
+    return std::sqrt(edge2 + surface2);
+  }
+
+  Candidate refine(const ScanModel& light, const NearestPoints& edges, const RigidMotion& start) const {
+    RigidIcpOptions icp;
+    icp.max_iterations = 14;
+    icp.stop_change_ratio = 1e-3;
+    icp.surface_points = static_cast<int>(kSurfaceSample);
+    icp.start_scale_mm = 0.6 * cap_mm_;
+    icp.band_mm = options_.band_mm;
+    icp.threads = 1;
+    const RigidIcpResult result = icp_point_to_plane(cad_, light, start, icp);
+    Candidate candidate;
+    if (!result.usable()) return candidate;
+    candidate.scan_from_cad = result.scan_from_cad;
+    candidate.score_mm = score(light, edges, result.scan_from_cad);
+    candidate.free = free_directions(result.information, result.pivot_mm, size_mm_);
+    return candidate;
+  }
+
+  /// The best distinct poses of one hypothesis, best first.
+  std::vector<Candidate> candidates(const ScanModel& scan, bool flip, bool mirror, std::size_t refined) const {
+    const ScanModel light = hypothesis(scan, flip, mirror);
+    const NearestPoints edges(light.edge_mm);
+    std::vector<std::pair<double, RigidMotion>> starts;
+    for (const LoopMatch& match : match_loops(loops_, light.loops))
+      starts.emplace_back(score(light, edges, match.scan_from_cad), match.scan_from_cad);
+    std::stable_sort(starts.begin(), starts.end(), [](auto& a, auto& b) { return a.first < b.first; });
+    if (starts.size() > refined) starts.resize(refined);
+    std::vector<Candidate> found(starts.size());
+    parallel_for(starts.size(), 1, options_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) found[i] = refine(light, edges, starts[i].second);
+    });
+    for (Candidate& candidate : found) candidate.flip = flip, candidate.mirror = mirror;
+    std::stable_sort(found.begin(), found.end(), [](auto& a, auto& b) { return a.score_mm < b.score_mm; });
+    return found;
+  }
+
+  /// True if the two poses put the contours in the same place, point by point or, where a motion along the contour is
+  /// free (a circle), as curves.
+  bool same_place(const Candidate& a, const Candidate& b) const {
+    const RigidMotion g = a.scan_from_cad.inverse() * b.scan_from_cad;
+    double moved = 0.0, off_curve = 0.0;
+    for (const Eigen::Vector3d& p : samples_mm_) {
+      moved = std::max(moved, (g * p - p).norm());
+      double nearest = 1e300;
+      for (const Curve& curve : cad_.contours) nearest = std::min(nearest, curve.nearest(g * p).distance_mm);
+      off_curve = std::max(off_curve, nearest);
+    }
+    const double tolerance_mm = 0.06 * size_mm_;
+    return moved < tolerance_mm || (!a.free.empty() && off_curve < tolerance_mm);
+  }
+
+ private:
+  const CadModel& cad_;
+  const CoarseAlignOptions& options_;
+  std::vector<Contour> loops_;
+  std::vector<Eigen::Vector3d> samples_mm_;
+  double size_mm_ = 0.0, cap_mm_ = 0.0;
+};
+
+/// The unit in which the loops would fit, when no loop fits as stated.
+double unit_that_fits(const CadModel& cad, const ScanModel& scan) {
+  for (const double ratio : kUnitRatios)
+    for (const Curve& curve : cad.contours)
+      for (const Contour& loop : scan.loops) {
+        const double scaled = length_mm(loop) * ratio / curve.length_mm();
+        if (loop.closed && scaled > 0.8 && scaled < 1.25) return ratio;
+      }
+  return 1.0;
+}
+
+std::string percent(double ratio) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.0f %%", 100.0 * ratio);
+  return text;
+}
+
+CoarseAlignment from_initial(const CadModel& cad, const ScanModel& scan, const CoarseAlignOptions& options,
+                             const Search& search) {
+  CoarseAlignment result;
+  result.start = "initial pose";
+  const ScanModel light = hypothesis(scan, false, false);
+  const NearestPoints edges(light.edge_mm);
+  const Candidate refined = search.refine(light, edges, *options.initial_scan_from_cad);
+  if (refined.score_mm > 1e299) {
+    result.reason = "the initial pose of the recipe puts no scan point near the part";
+    return result;
+  }
+  result.scan_from_cad = refined.scan_from_cad;
+  result.score_mm = refined.score_mm;
+  const double turned = rotation_between_rad(*options.initial_scan_from_cad, refined.scan_from_cad);
+  if (turned > options.within_rad)
+    result.reason = "the data turn the part by more than the initial pose allows (within_deg)";
+  (void)cad;
+  return result;
+}
+
+std::string ambiguity(const Candidate& best, const Candidate& other, double ratio) {
+  if (best.flip != other.flip)
+    return "both sides of the part fit alike (runner-up " + percent(ratio) +
+           " of the best): nothing says which side the scanner saw; give normals in the file, scan.seen_from or "
+           "scan.initial";
+  return "two poses fit alike (runner-up " + percent(ratio) + " of the best); give scan.initial in the recipe";
+}
+
+}  // namespace
+
+std::vector<std::string> free_directions(const Eigen::Matrix<double, 6, 6>& information,
+                                         const Eigen::Vector3d& pivot_mm, double size_mm) {
+  std::vector<std::string> words;
+  Eigen::Matrix<double, 6, 1> scale;
+  scale << Eigen::Vector3d::Constant(1.0 / size_mm), Eigen::Vector3d::Ones();
+  const Eigen::Matrix<double, 6, 6> scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(scaled);
+  for (int i = 0; i < 6; ++i) {
+    if (eigen.eigenvalues()[i] > kFreeEigenvalueRatio * eigen.eigenvalues()[5]) continue;
+    const Eigen::Vector3d turn = eigen.eigenvectors().col(i).head<3>();
+    const Eigen::Vector3d shift = eigen.eigenvectors().col(i).tail<3>();
+    const bool is_turn = turn.norm() > 0.5;
+    const Eigen::Vector3d axis = (is_turn ? turn : shift).normalized();
+    // A screw about the pivot: its axis passes where the shift is undone by the turn.
+    const Eigen::Vector3d through =
+        is_turn ? Eigen::Vector3d(pivot_mm + axis.cross(shift) * size_mm / turn.norm()) : pivot_mm;
+    char text[200];
+    std::snprintf(text, sizeof text, "%s (%.3f %.3f %.3f) through (%.1f %.1f %.1f) mm, CAD frame",
+                  is_turn ? "turn about the axis" : "shift along", axis.x(), axis.y(), axis.z(), through.x(),
+                  through.y(), through.z());
+    words.emplace_back(text);
+  }
+  return words;
+}
+
+CoarseAlignment coarse_align(const CadModel& cad, const ScanModel& scan, const CoarseAlignOptions& options) {
+  const Search search(cad, options);
+  if (options.initial_scan_from_cad) return from_initial(cad, scan, options, search);
+
+  CoarseAlignment result;
+  result.start = "matching loops";
+  std::vector<Candidate> proper = search.candidates(scan, false, false, kRefined);
+  const bool side_open = scan.side == SideKnown::kNo;
+  if (side_open) {
+    const std::vector<Candidate> flipped = search.candidates(scan, true, false, kRefined);
+    proper.insert(proper.end(), flipped.begin(), flipped.end());
+    std::stable_sort(proper.begin(), proper.end(), [](auto& a, auto& b) { return a.score_mm < b.score_mm; });
+  }
+  if (proper.empty() || proper.front().score_mm > 1e299) {
+    result.unit_ratio = unit_that_fits(cad, scan);
+    result.reason = "no closed contour of the scan has the length of an accepted CAD contour";
+    return result;
+  }
+  const Candidate& best = proper.front();
+  result.scan_from_cad = best.scan_from_cad;
+  result.score_mm = best.score_mm;
+  result.flipped_normals = best.flip;
+  const std::vector<Candidate> mirrored = search.candidates(scan, false, true, 2);
+  if (!side_open && !mirrored.empty() && mirrored.front().score_mm < kMirrorBetterRatio * best.score_mm &&
+      best.score_mm > 2.0 * scan.spacing_mm) {
+    result.mirrored = true;
+    result.reason = "the mirror image of the scan fits the part and the scan itself does not";
+    return result;
+  }
+  for (const Candidate& other : proper) {
+    if (&other == &best || other.score_mm > 1e299) continue;
+    if (other.flip == best.flip && search.same_place(best, other)) continue;
+    result.runner_up_ratio = other.score_mm / best.score_mm;
+    if (result.runner_up_ratio < options.ambiguity_ratio) result.reason = ambiguity(best, other, result.runner_up_ratio);
+    break;
+  }
+  if (result.usable() && best.score_mm > 0.8 * search.cap_mm())
+    result.reason = "no pose fits: the best start leaves " + std::to_string(best.score_mm) + " mm";
+  return result;
+}
+
+}  // namespace arris

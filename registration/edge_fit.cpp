@@ -1,0 +1,310 @@
+#include "registration/edge_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/geometry/parallel_for.hpp"
+
+namespace arris {
+namespace {
+
+constexpr double kBalance = 0.541;      // log(1 + exp(0.541)) = 1: see fit_edge
+constexpr double kStartTauMm = 2.0;
+constexpr double kTauShrink = 0.6;
+constexpr double kTauFloorMm = 0.03;
+constexpr double kStrayShare = 2e-3;    // of points beyond the edge that are no edge at all, once tau is small
+constexpr double kGateSigmas = 4.0;     // height residual of a point that takes part in the edge
+constexpr double kPointsPerBin = 8.0;
+constexpr int kRounds = 30;
+constexpr std::size_t kChunk = 512;
+
+/// A scan point in the contour's own coordinates, CAD frame.
+struct StripPoint {
+  double arc_mm = 0.0;
+  double across_mm = 0.0;  // into the material
+  double height_mm = 0.0;  // signed distance to the CAD surface
+  double curve_weight = 1.0;  // undoes the fan of a bent contour: area of the strip per length of the contour
+  SplineRow row;
+  bool inlier = true;
+};
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double sigmoid(double x) { return x >= 0.0 ? 1.0 / (1.0 + std::exp(-x)) : std::exp(x) / (1.0 + std::exp(x)); }
+
+/// The nominal contour carried to the scan, with its arc lengths kept.
+class CarriedCurve {
+ public:
+  CarriedCurve(const Curve& nominal, const ContourMotion& motion) : nominal_(nominal), curve_(carry(nominal, motion)) {}
+
+  /// Nominal arc length of the foot of a scan point.
+  double arc_of(const Eigen::Vector3d& p_scan_mm, double& distance_mm) const {
+    const CurveFoot foot = curve_.nearest(p_scan_mm);
+    distance_mm = foot.distance_mm;
+    const double begin = nominal_.arc_of_point_mm(foot.segment);
+    const double end = nominal_.arc_of_point_mm(foot.segment + 1);  // the total length after the last chord
+    return begin + foot.ratio * (end - begin);
+  }
+
+ private:
+  static Contour carry(const Curve& nominal, const ContourMotion& motion) {
+    Contour carried = nominal.contour();
+    for (std::size_t i = 0; i < carried.points_mm.size(); ++i) {
+      const double s_mm = nominal.arc_of_point_mm(static_cast<int>(i));
+      carried.points_mm[i] = motion.at(s_mm) * nominal.contour().points_mm[i];
+    }
+    return carried;
+  }
+
+  const Curve& nominal_;
+  Curve curve_;
+};
+
+/// Curvature of the contour in the surface at s: positive where the material fans out (a hole's inside corner).
+double fan_per_mm(const Curve& curve, double arc_mm, double window_mm) {
+  const Eigen::Vector3d before = curve.tangent(curve.wrap_mm(arc_mm - window_mm));
+  const Eigen::Vector3d after = curve.tangent(curve.wrap_mm(arc_mm + window_mm));
+  const Eigen::Vector3d inward = curve.normal(arc_mm).cross(curve.tangent(arc_mm));
+  return -(after - before).dot(inward) / (2.0 * window_mm);
+}
+
+class EdgeFitter {
+ public:
+  EdgeFitter(const CadModel& cad, std::size_t contour, const ScanModel& scan, const ContourMotion& motion,
+             const EdgeFitOptions& options)
+      : cad_(cad), contour_(contour), curve_(cad.contours[contour]), scan_(scan), motion_(motion), options_(options),
+        fit_{ArcSpline(curve_.length_mm(), curve_.closed(), options.knot_mm), {}, {}, {}, {}, {}, {}, 0.0, {}, 0.0, 0.0, 0} {
+    strip_mm_ = std::clamp(4.0 * scan.spacing_mm, 3.0, options.strip_mm);
+    normal_strip_mm_ = std::clamp(6.0 * scan.spacing_mm, strip_mm_, options.normal_strip_mm);
+  }
+
+  EdgeFit run() {
+    collect();
+    fit_height();
+    find_seen_bins();
+    fit_across();
+    return std::move(fit_);
+  }
+
+ private:
+  void collect() {
+    const CarriedCurve carried(curve_, motion_);
+    const double outside_mm = 2.0 * scan_.spacing_mm + 2.0;
+    std::vector<StripPoint> all(scan_.points_mm.size());
+    parallel_for(all.size(), kChunk, options_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        StripPoint& p = all[i];
+        p.inlier = false;
+        double distance_mm = 0.0;
+        p.arc_mm = carried.arc_of(scan_.points_mm[i], distance_mm);
+        if (distance_mm > normal_strip_mm_ + outside_mm) continue;
+        place(i, p);
+        p.inlier = p.across_mm > -outside_mm && p.across_mm < normal_strip_mm_ &&
+                   std::abs(p.height_mm) < 3.0 * scan_.spacing_mm + 3.0;
+      }
+    });
+    for (StripPoint& p : all)
+      if (p.inlier) points_.push_back(p);
+    const double window_mm = std::min(6.0, curve_.length_mm() / 20.0);
+    for (StripPoint& p : points_) {
+      p.row = fit_.spline.at(p.arc_mm);
+      const double fan = 1.0 + fan_per_mm(curve_, p.arc_mm, window_mm) * std::max(0.0, p.across_mm);
+      p.curve_weight = 1.0 / std::clamp(fan, 0.3, 3.0);
+    }
+  }
+
+  void place(std::size_t i, StripPoint& p) const {
+    const RigidMotion cad_from_scan = motion_.at(p.arc_mm).inverse();
+    const Eigen::Vector3d x = cad_from_scan * scan_.points_mm[i];
+    const Eigen::Vector3d from_contour = x - curve_.point_mm(p.arc_mm);
+    const Eigen::Vector3d normal = curve_.normal(p.arc_mm);
+    p.across_mm = from_contour.dot(normal.cross(curve_.tangent(p.arc_mm)).normalized());
+    const SurfacePoint foot = cad_.surface.closest(x, normal_strip_mm_);
+    const bool beside = foot.triangle < 0 || foot.on_border;
+    p.height_mm = beside ? from_contour.dot(normal) : foot.normal.dot(x - foot.foot_mm);
+  }
+
+  /// Height and tilt: h(s, u) = a(s) + b(s) u over the strip, robust, in one linear system a round.
+  void fit_height() {
+    const int n = fit_.spline.size();
+    fit_.height = Eigen::VectorXd::Zero(n);
+    fit_.tilt = Eigen::VectorXd::Zero(n);
+    Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+    prior.topLeftCorner(n, n) = fit_.spline.bending(options_.bend_normal_per_mm);
+    const double knot2 = fit_.spline.knot_mm() * fit_.spline.knot_mm();
+    prior.bottomRightCorner(n, n) = fit_.spline.bending(options_.tilt_change_rad / knot2);
+    prior.diagonal().tail(n).array() += 1.0 / (0.05 * 0.05);
+    prior.diagonal().head(n).array() += 1.0 / (20.0 * 20.0);
+    double sigma = 0.5 + 0.2 * scan_.spacing_mm;
+    Eigen::MatrixXd information;
+    for (int round = 0; round < 8; ++round) {
+      information = prior;
+      Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * n);
+      std::vector<double> sizes;
+      for (const StripPoint& p : points_) {
+        const double residual = p.height_mm - height_at(p);
+        sizes.push_back(std::abs(residual));
+        const double ratio2 = residual * residual / (9.0 * sigma * sigma);
+        const double weight = 1.0 / ((1.0 + ratio2) * (1.0 + ratio2)) / (sigma * sigma);
+        add_height_row(p, weight, information, right);
+      }
+      const Eigen::VectorXd solution = information.ldlt().solve(right);
+      fit_.height = solution.head(n);
+      fit_.tilt = solution.tail(n);
+      sigma = std::max(1.4826 * median_of(std::move(sizes)), 0.25 * scan_.noise_sigma_mm + 1e-4);
+    }
+    fit_.residual_sigma_mm = sigma;
+    const Eigen::MatrixXd covariance = information.ldlt().solve(Eigen::MatrixXd::Identity(2 * n, 2 * n));
+    fit_.height_covariance = covariance.topLeftCorner(n, n);
+    fit_.tilt_covariance = covariance.bottomRightCorner(n, n);
+    for (StripPoint& p : points_) {
+      p.inlier = std::abs(p.height_mm - height_at(p)) < kGateSigmas * sigma;
+      fit_.points += p.inlier ? 1 : 0;
+    }
+  }
+
+  double height_at(const StripPoint& p) const {
+    return p.row.dot(fit_.height) + p.row.dot(fit_.tilt) * std::max(0.0, p.across_mm);
+  }
+
+  void add_height_row(const StripPoint& p, double weight, Eigen::MatrixXd& information, Eigen::VectorXd& right) const {
+    const int n = fit_.spline.size();
+    const double u = std::max(0.0, p.across_mm);
+    std::array<int, 8> column{};
+    std::array<double, 8> value{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      column[k] = p.row.index[k], column[k + 4] = n + p.row.index[k];
+      value[k] = p.row.value[k], value[k + 4] = u * p.row.value[k];
+    }
+    for (std::size_t a = 0; a < 8; ++a) {
+      right[column[a]] += weight * value[a] * p.height_mm;
+      for (std::size_t b = 0; b < 8; ++b) information(column[a], column[b]) += weight * value[a] * value[b];
+    }
+  }
+
+  /// Bins of the contour in which the scan shows material right up to the edge.
+  void find_seen_bins() {
+    double inliers = 0.0;
+    for (const StripPoint& p : points_)
+      if (p.inlier && p.across_mm > -scan_.spacing_mm && p.across_mm < strip_mm_) inliers += p.curve_weight;
+    const double mean_per_mm = std::max(1e-9, inliers / curve_.length_mm());
+    const double bin_mm = std::clamp(kPointsPerBin / mean_per_mm, 2.0, curve_.length_mm() / 8.0);
+    const std::size_t bins = static_cast<std::size_t>(std::floor(curve_.length_mm() / bin_mm));
+    fit_.bin_mm = curve_.length_mm() / static_cast<double>(bins);
+    std::vector<double> all(bins, 0.0), near(bins, 0.0);
+    for (const StripPoint& p : points_) {
+      if (!p.inlier || p.across_mm > strip_mm_) continue;
+      const std::size_t b = std::min(bins - 1, static_cast<std::size_t>(p.arc_mm / fit_.bin_mm));
+      all[b] += p.curve_weight;
+      if (p.across_mm < 0.5 * strip_mm_) near[b] += p.curve_weight;
+    }
+    const double usual = median_of(all), usual_near = median_of(near);
+    fit_.seen.assign(bins, 1);
+    for (std::size_t b = 0; b < bins; ++b)
+      if (near[b] < 0.2 * usual_near || all[b] < 0.2 * usual) fit_.seen[b] = 0;
+    const std::vector<char> sure = fit_.seen;
+    for (std::size_t b = 0; b < bins; ++b) {  // the rim of a gap cuts its neighbours too
+      const bool beside_gap = !sure[(b + 1) % bins] || !sure[(b + bins - 1) % bins];
+      if (beside_gap && near[b] < 0.6 * usual_near) fit_.seen[b] = 0;
+    }
+    fit_.density_per_mm2 = usual / (fit_.bin_mm * strip_mm_);
+  }
+
+  /// Newton on the one-sided potential, tau shrinking from kStartTauMm to 1 / (density * knot).
+  void fit_across() {
+    const int n = fit_.spline.size();
+    fit_.across = Eigen::VectorXd::Zero(n);
+    Eigen::MatrixXd prior = fit_.spline.bending(options_.bend_across_per_mm);
+    const double far_mm = 3.0 * scan_.spacing_mm + 2.0;
+    prior.diagonal().array() += 1.0 / (far_mm * far_mm);
+    const double tau_end =
+        std::max(kTauFloorMm, 1.0 / std::max(1e-9, 1.5 * fit_.density_per_mm2 * fit_.spline.knot_mm()));
+    std::vector<const StripPoint*> active;
+    for (const StripPoint& p : points_)
+      if (p.inlier && fit_.seen_at(p.arc_mm)) active.push_back(&p);
+    Eigen::MatrixXd curvature;
+    for (double tau = std::max(kStartTauMm, 0.5 * scan_.spacing_mm);; tau = std::max(tau_end, tau * kTauShrink)) {
+      const bool last = tau <= tau_end * 1.0001;
+      for (int round = 0; round < (last ? kRounds : 4); ++round)
+        if (newton_step(active, prior, tau, curvature) < 1e-4) break;
+      if (last) break;
+    }
+    fit_.across_covariance = curvature.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+  }
+
+  double newton_step(const std::vector<const StripPoint*>& active, const Eigen::MatrixXd& prior, double tau,
+                     Eigen::MatrixXd& curvature) {
+    curvature = prior;
+    Eigen::VectorXd gradient = prior * fit_.across;
+    const double stray = tau < 0.5 * kStartTauMm ? kStrayShare : 0.0;
+    for (const StripPoint* p : active) {
+      const double g = p->across_mm - p->row.dot(fit_.across);
+      if (g > strip_mm_) continue;
+      const double x = g / tau - kBalance;
+      const double inside = sigmoid(x);
+      const double trusted = inside / (inside + stray);
+      const double outward = p->curve_weight * trusted * (1.0 - inside) / tau;  // the point pushes the edge outward
+      const double inward = g > 0.0 ? p->curve_weight / strip_mm_ : 0.0;
+      const double bend = p->curve_weight * trusted * bounded_curvature(x) / (tau * tau);
+      for (std::size_t a = 0; a < 4; ++a) {
+        gradient[p->row.index[a]] += (outward - inward) * p->row.value[a];
+        for (std::size_t b = 0; b < 4; ++b)
+          curvature(p->row.index[a], p->row.index[b]) += bend * p->row.value[a] * p->row.value[b];
+      }
+    }
+    const Eigen::VectorXd step = curvature.ldlt().solve(gradient);
+    fit_.across -= step;
+    return step.cwiseAbs().maxCoeff();
+  }
+
+  /// Curvature of -log sigmoid, with the quadratic bound tanh(x/2) / (2x) where Newton would overshoot (x < 0).
+  static double bounded_curvature(double x) {
+    if (x < -1e-6) return std::tanh(0.5 * x) / (2.0 * x);
+    const double s = sigmoid(x);
+    return s * (1.0 - s);
+  }
+
+  const CadModel& cad_;
+  std::size_t contour_;
+  const Curve& curve_;
+  const ScanModel& scan_;
+  const ContourMotion& motion_;
+  const EdgeFitOptions& options_;
+  EdgeFit fit_;
+  std::vector<StripPoint> points_;
+  double strip_mm_ = 0.0, normal_strip_mm_ = 0.0;
+};
+
+}  // namespace
+
+bool EdgeFit::seen_at(double arc_mm) const {
+  if (seen.empty()) return false;
+  const double bin = arc_mm / bin_mm;
+  return seen[std::min(seen.size() - 1, static_cast<std::size_t>(std::max(0.0, bin)))] != 0;
+}
+
+double EdgeFit::seen_ratio() const {
+  if (seen.empty()) return 0.0;
+  return static_cast<double>(std::count(seen.begin(), seen.end(), 1)) / static_cast<double>(seen.size());
+}
+
+EdgeFit fit_edge(const CadModel& cad, std::size_t contour, const ScanModel& scan, const ContourMotion& motion,
+                 const EdgeFitOptions& options) {
+  return EdgeFitter(cad, contour, scan, motion, options).run();
+}
+
+Eigen::Vector3d edge_point_mm(const CadModel& cad, std::size_t contour, const ContourMotion& motion,
+                              const EdgeFit& fit, double arc_mm) {
+  const Curve& curve = cad.contours[contour];
+  const SplineRow row = fit.spline.at(arc_mm);
+  return motion.at(arc_mm) * (curve.point_mm(arc_mm) + row.dot(fit.across) * cad.inward(contour, arc_mm) +
+                              row.dot(fit.height) * curve.normal(arc_mm));
+}
+
+}  // namespace arris

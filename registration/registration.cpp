@@ -1,0 +1,196 @@
+#include "registration/registration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "acquisition/geometry/parallel_for.hpp"
+
+namespace arris {
+namespace {
+
+constexpr double kAngleGapSigmaRatio = 0.7;   // scatter of angle-gap edge points across the edge, in spacings
+constexpr double kSharpenedSigmaRatio = 0.1;  // of the edge by support
+constexpr double kSampleMm = 2.0;
+
+/// Turns an undecided scan to the side that the start pose chose.
+void flip(ScanModel& scan) {
+  for (auto* list : {&scan.normals, &scan.edge_normals})
+    for (Eigen::Vector3d& n : *list) n = -n;
+  for (Contour& loop : scan.loops) {
+    for (Eigen::Vector3d& n : loop.normals) n = -n;
+    std::reverse(loop.points_mm.begin(), loop.points_mm.end());
+    std::reverse(loop.normals.begin(), loop.normals.end());
+  }
+}
+
+template <class Body>
+void along(const Curve& curve, const Body& body) {
+  const int count = std::max(8, static_cast<int>(curve.length_mm() / kSampleMm));
+  for (int i = 0; i < count; ++i) body(curve.length_mm() * i / count);
+}
+
+std::vector<ContourResult> with_edges(const CadModel& cad, const ScanModel& scan, std::vector<ContourMotion> motions,
+                                      const RegistrationOptions& options) {
+  std::vector<ContourResult> results;
+  for (std::size_t c = 0; c < motions.size(); ++c) {
+    EdgeFit edge = fit_edge(cad, c, scan, motions[c], options.edge);
+    results.push_back({std::move(motions[c]), std::move(edge)});
+  }
+  return results;
+}
+
+/// The found edge, sampled where it was seen.
+EdgeData sharpened(const CadModel& cad, const ScanModel& scan, const std::vector<ContourResult>& contours) {
+  EdgeData data;
+  data.sigma_across_mm = std::max(0.05, kSharpenedSigmaRatio * scan.spacing_mm);
+  for (std::size_t c = 0; c < contours.size(); ++c)
+    along(cad.contours[c], [&](double s_mm) {
+      if (contours[c].edge.seen_at(s_mm))
+        data.points_mm.push_back(edge_point_mm(cad, c, contours[c].motion, contours[c].edge, s_mm));
+    });
+  return data;
+}
+
+ContourMotion rigid_motion(const Curve& curve, const RigidMotion& scan_from_cad) {
+  SegmentFit fit;
+  fit.scan_from_cad = scan_from_cad;
+  SubdivisionOptions whole;
+  whole.segment_length_max_mm = 10.0 * curve.length_mm();
+  whole.corner_radius_max_mm = 0.0;
+  const Subdivision subdivision(curve, whole);
+  return {curve, subdivision, std::vector<SegmentFit>(subdivision.segments().size(), fit)};
+}
+
+/// Rms distance from the found edge to the nominal carried by `carry`, over the seen part of all contours.
+template <class Carry>
+double edge_rms(const CadModel& cad, const std::vector<ContourResult>& contours, const Carry& carry) {
+  double sum2 = 0.0, count = 0.0;
+  for (std::size_t c = 0; c < contours.size(); ++c) {
+    Contour carried = cad.contours[c].contour();
+    for (std::size_t i = 0; i < carried.points_mm.size(); ++i)
+      carried.points_mm[i] = carry(c, cad.contours[c].arc_of_point_mm(static_cast<int>(i)), carried.points_mm[i]);
+    const Curve image(carried);
+    along(cad.contours[c], [&](double s_mm) {
+      if (!contours[c].edge.seen_at(s_mm)) return;
+      const double d = image.nearest(edge_point_mm(cad, c, contours[c].motion, contours[c].edge, s_mm)).distance_mm;
+      sum2 += d * d;
+      count += 1.0;
+    });
+  }
+  return count > 0.0 ? std::sqrt(sum2 / count) : 0.0;
+}
+
+double stretch(const CadModel& cad, const std::vector<ContourResult>& contours) {
+  double carried_mm = 0.0, nominal_mm = 0.0;
+  for (std::size_t c = 0; c < contours.size(); ++c) {
+    Contour image;
+    image.closed = cad.contours[c].closed();
+    along(cad.contours[c],
+          [&](double s_mm) { image.points_mm.push_back(contours[c].motion.at(s_mm) * cad.contours[c].point_mm(s_mm)); });
+    Contour flat = image;
+    flat.points_mm.clear();
+    along(cad.contours[c], [&](double s_mm) { flat.points_mm.push_back(cad.contours[c].point_mm(s_mm)); });
+    carried_mm += length_mm(image);
+    nominal_mm += length_mm(flat);
+  }
+  return nominal_mm > 0.0 ? carried_mm / nominal_mm - 1.0 : 0.0;
+}
+
+/// Longest run of bins without data, as arc lengths; wraps on a closed contour.
+struct Unseen {
+  double from_mm = 0.0, length_mm = 0.0;
+};
+Unseen longest_unseen(const EdgeFit& edge, bool closed) {
+  Unseen longest;
+  const std::size_t n = edge.seen.size();
+  for (std::size_t start = 0; start < n; ++start) {
+    if (edge.seen[start] || (start > 0 && !edge.seen[start - 1])) continue;
+    std::size_t run = 0;
+    while (run < n && (closed || start + run < n) && !edge.seen[(start + run) % n]) ++run;
+    if (static_cast<double>(run) * edge.bin_mm > longest.length_mm)
+      longest = {static_cast<double>(start) * edge.bin_mm, static_cast<double>(run) * edge.bin_mm};
+  }
+  return longest;
+}
+
+void judge_coverage(const CadModel& cad, const RegistrationOptions& options, Registration& result) {
+  for (std::size_t c = 0; c < result.contours.size(); ++c) {
+    const EdgeFit& edge = result.contours[c].edge;
+    const int id = cad.contours[c].contour().id;
+    char text[200];
+    if (edge.seen_ratio() < options.min_seen_ratio) {
+      std::snprintf(text, sizeof text, "contour %d: the scan shows %.0f %% of the edge, %.0f %% needed", id,
+                    100.0 * edge.seen_ratio(), 100.0 * options.min_seen_ratio);
+      result.refusals.emplace_back(text);
+    }
+    const Unseen gap = longest_unseen(edge, cad.contours[c].closed());
+    if (gap.length_mm > options.max_unseen_mm) {
+      std::snprintf(text, sizeof text, "contour %d not seen from s = %.0f to %.0f mm (%.0f mm, at most %.0f)", id,
+                    gap.from_mm, gap.from_mm + gap.length_mm, gap.length_mm, options.max_unseen_mm);
+      result.refusals.emplace_back(text);
+    }
+  }
+}
+
+void deform(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options, Registration& result) {
+  const RigidMotion& rigid = result.rigid.scan_from_cad;
+  if (options.method == RegistrationMethod::kRigid) {
+    std::vector<ContourMotion> motions;
+    for (const Curve& curve : cad.contours) motions.push_back(rigid_motion(curve, rigid));
+    result.contours = with_edges(cad, scan, std::move(motions), options);
+    result.field = std::make_shared<RigidField>(rigid);
+    return;
+  }
+  const EdgeData found{scan.edge_mm, std::max(0.3, kAngleGapSigmaRatio * scan.spacing_mm)};
+  result.contours =
+      with_edges(cad, scan, subdivision_icp(cad, scan, found, rigid, options.subdivision), options);
+  const EdgeData edge = sharpened(cad, scan, result.contours);
+  result.contours = with_edges(cad, scan, subdivision_icp(cad, scan, edge, rigid, options.subdivision), options);
+  result.field = std::make_shared<SubdivisionField>(cad, result.contours, options.band_mm, options.follow_edge);
+}
+
+}  // namespace
+
+Registration register_part(const CadModel& cad, ScanModel& scan, const RegistrationOptions& options) {
+  Registration result;
+  result.coarse = coarse_align(cad, scan, options.coarse);
+  if (!result.coarse.usable()) {
+    result.refusals.push_back(result.coarse.reason);
+    return result;
+  }
+  if (result.coarse.flipped_normals) flip(scan);
+  scan.side = SideKnown::kYes;
+  RigidIcpOptions rigid = options.rigid;
+  rigid.start_scale_mm = std::max(3.0 * result.coarse.score_mm, 4.0 * scan.spacing_mm);
+  result.rigid = icp_point_to_plane(cad, scan, result.coarse.scan_from_cad, rigid);
+  if (!result.rigid.usable()) {
+    result.refusals.push_back(result.rigid.reason);
+    return result;
+  }
+  double size_mm = 1.0;
+  for (const Curve& curve : cad.contours) size_mm = std::max(size_mm, curve.length_mm() / 6.28);
+  result.free_directions = free_directions(result.rigid.information, result.rigid.pivot_mm, size_mm);
+  deform(cad, scan, options, result);
+  const RigidMotion& pose = result.rigid.scan_from_cad;
+  result.stage_residual_mm.emplace_back(
+      "rigid", edge_rms(cad, result.contours, [&](std::size_t, double, const Eigen::Vector3d& p) { return pose * p; }));
+  if (options.method == RegistrationMethod::kSubdivision)
+    result.stage_residual_mm.emplace_back(
+        "subdivision", edge_rms(cad, result.contours, [&](std::size_t c, double s_mm, const Eigen::Vector3d& p) {
+          return result.contours[c].motion.at(s_mm) * p;
+        }));
+  result.mean_strain_ratio = stretch(cad, result.contours);
+  for (const ContourResult& contour : result.contours)
+    result.density_per_mm2 = std::max(result.density_per_mm2, contour.edge.density_per_mm2);
+  judge_coverage(cad, options, result);
+  return result;
+}
+
+double rigid_gap_mm(const CadModel& cad, std::size_t contour, const Registration& registration, double arc_mm) {
+  const ContourResult& found = registration.contours[contour];
+  const Eigen::Vector3d edge_mm = edge_point_mm(cad, contour, found.motion, found.edge, arc_mm);
+  return cad.contours[contour].nearest(registration.rigid.scan_from_cad.inverse() * edge_mm).distance_mm;
+}
+
+}  // namespace arris

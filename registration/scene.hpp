@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "acquisition/geometry/nearest.hpp"
+#include "acquisition/geometry/polyline.hpp"
+#include "acquisition/geometry/surface_query.hpp"
+#include "acquisition/types/contour.hpp"
+
+namespace arris {
+
+/// The drawing, ready for queries: frame Cad, mm. Built once a part number.
+struct CadModel {
+  SurfaceQuery surface;
+  std::vector<Curve> contours;  ///< accepted contours, each with normals; material on the left seen against them
+
+  /// Unit direction in the surface at s, across contour c, into the material: normal x tangent.
+  [[nodiscard]] Eigen::Vector3d inward(std::size_t c, double arc_mm) const;
+};
+
+/// How the scan's normals got their sign; decides whether both sides of the part must be tried.
+enum class SideKnown { kNo, kYes };
+
+/// One scan, ready for queries: frame Scan about the cloud's offset, mm, double.
+struct ScanModel {
+  std::vector<Eigen::Vector3d> points_mm;
+  std::vector<Eigen::Vector3d> normals;    ///< unit, one a point; out of the material if side == kYes, else consistent
+  NearestPoints tree;                      ///< over points_mm
+  std::vector<Contour> loops;              ///< found contours, oriented like the CAD's when side == kYes
+  std::vector<Eigen::Vector3d> edge_mm;    ///< all points of all loops: where the scan stops
+  std::vector<Eigen::Vector3d> edge_normals;
+  double spacing_mm = 0.0;                 ///< median point spacing
+  double noise_sigma_mm = 0.0;
+  SideKnown side = SideKnown::kNo;
+};
+
+}  // namespace arris

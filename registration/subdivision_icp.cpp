@@ -1,0 +1,337 @@
+#include "registration/subdivision_icp.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/geometry/parallel_for.hpp"
+#include "acquisition/geometry/rigid_fit.hpp"
+#include "acquisition/types/error.hpp"
+#include "registration/edge_pairs.hpp"
+#include "registration/normal_equations.hpp"
+
+namespace arris {
+namespace {
+
+constexpr double kCosNormalsAgree = 0.5;    // correspondences need normals within 60 degrees
+constexpr double kAnneal = 0.7;             // robust scale of the next round over this one
+constexpr double kScaleSigmas = 3.0;        // where annealing stops
+constexpr double kMisfitSigmaMm = 0.15;     // a rigid segment on a bending part: misfit along the normal
+constexpr double kCoveredRatio = 0.4;       // of a segment's arc bins, for its motion to count as data
+constexpr double kBinMm = 5.0;
+constexpr std::size_t kChunk = 512;
+
+/// Scan points beside the contour that hold the segments' tilt.
+struct StabilityPoint {
+  std::size_t scan_index = 0;
+  double arc_mm = 0.0;
+};
+
+double log_angle(const RigidMotion& motion, Eigen::Vector3d& turn) {
+  const Eigen::AngleAxisd rotation(motion.linear());
+  turn = rotation.angle() * rotation.axis();
+  return rotation.angle();
+}
+
+/// One contour in kFoot mode: all segments move together, each by its own Gauss-Newton step a round.
+class FootFit {
+ public:
+  FootFit(const CadModel& cad, std::size_t contour, const ScanModel& scan, const EdgeData& data,
+          const RigidMotion& rigid, const SubdivisionIcpOptions& options)
+      : cad_(cad), curve_(cad.contours[contour]), contour_(static_cast<int>(contour)), scan_(scan), data_(data),
+        options_(options), subdivision_(curve_, options.subdivision) {
+    SegmentFit start;
+    start.scan_from_cad = rigid;
+    fits_.assign(subdivision_.segments().size(), start);
+    sigma_normal_mm_ = std::max(scan.noise_sigma_mm, kMisfitSigmaMm);
+    choose_stability_points(rigid.inverse());
+    scale_ = start_scale(rigid.inverse());
+  }
+
+  ContourMotion run() {
+    double last_rms = 1e300;
+    for (int k = 0; k < options_.max_iterations; ++k) {
+      const double rms = round();
+      for (SegmentFit& fit : fits_) fit.iterations = k + 1, fit.stop = "iteration limit";
+      if (scale_ <= 1.0 && std::abs(last_rms - rms) <= options_.stop_change_ratio * rms) {
+        for (SegmentFit& fit : fits_) fit.stop = "converged";
+        break;
+      }
+      last_rms = rms;
+      scale_ = std::max(1.0, scale_ * kAnneal);
+    }
+    return {curve_, subdivision_, fits_};
+  }
+
+ private:
+  /// Robust scale at the start, in final scales: the rigid fit leaves the whole deformation.
+  double start_scale(const RigidMotion& cad_from_scan) const {
+    std::vector<double> sizes;
+    for (const Eigen::Vector3d& e : data_.points_mm) {
+      const EdgePair pair = pair_edge(cad_, cad_from_scan * e, 60.0);
+      if (pair.contour == contour_) sizes.push_back(std::hypot(pair.across_mm, pair.normal_mm));
+    }
+    if (sizes.empty()) return 1.0;
+    const auto ninth = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() * 9 / 10);
+    std::nth_element(sizes.begin(), ninth, sizes.end());
+    const double final_mm = kScaleSigmas * std::min(data_.sigma_across_mm, sigma_normal_mm_);
+    return std::clamp(1.5 * *ninth / final_mm, 1.0, 400.0);
+  }
+
+  void choose_stability_points(const RigidMotion& cad_from_scan) {
+    if (options_.stability == StabilityPoints::kNone) return;
+    std::vector<double> arc(scan_.points_mm.size(), -1.0);
+    parallel_for(arc.size(), kChunk, options_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const EdgePair pair =
+            pair_edge(cad_, cad_from_scan * scan_.points_mm[i], options_.stability_distance_mm);
+        if (pair.contour == contour_ && pair.across_mm > scan_.spacing_mm) arc[i] = pair.foot.arc_mm;
+      }
+    });
+    std::vector<std::vector<StabilityPoint>> of(fits_.size());
+    for (std::size_t i = 0; i < arc.size(); ++i)
+      if (arc[i] >= 0.0)
+        for (const int z : subdivision_.reaching(arc[i])) of[static_cast<std::size_t>(z)].push_back({i, arc[i]});
+    const std::size_t limit = static_cast<std::size_t>(options_.stability_points);
+    for (std::vector<StabilityPoint>& list : of) {
+      if (list.size() <= limit) continue;
+      for (std::size_t i = 0; i < limit; ++i) list[i] = list[i * list.size() / limit];
+      list.resize(limit);
+    }
+    stability_ = std::move(of);
+  }
+
+  /// The motion the neighbours suggest for segment z, as cad_from_scan.
+  RigidMotion suggested(std::size_t z) const {
+    const std::size_t n = fits_.size();
+    const bool open_start = !curve_.closed() && z == 0, open_end = !curve_.closed() && z + 1 == n;
+    if (n == 1) return fits_[z].scan_from_cad.inverse();
+    const RigidMotion before = fits_[open_start ? z + 1 : (z + n - 1) % n].scan_from_cad.inverse();
+    const RigidMotion after = fits_[open_end ? z - 1 : (z + 1) % n].scan_from_cad.inverse();
+    const RigidMotion apart = before.inverse() * after;
+    Eigen::Vector3d turn;
+    const double angle_rad = log_angle(apart, turn);
+    RigidMotion middle = before;
+    if (angle_rad > 0.0) middle.rotate(Eigen::AngleAxisd(0.5 * angle_rad, turn / angle_rad));
+    const Eigen::Vector3d p_scan_mm = fits_[z].scan_from_cad * pivot(z);
+    middle.translation() = 0.5 * (before * p_scan_mm + after * p_scan_mm) - middle.linear() * p_scan_mm;
+    return middle;
+  }
+
+  Eigen::Vector3d pivot(std::size_t z) const {
+    const Segment& segment = subdivision_.segments()[z];
+    return curve_.point_mm(curve_.wrap_mm(0.5 * (segment.begin_mm + segment.end_mm)));
+  }
+
+  /// One round over all segments; returns the rms across the contour.
+  double round() {
+    const std::size_t n = fits_.size();
+    std::vector<NormalEquations> systems(n);
+    std::vector<RigidMotion> current(n);
+    for (std::size_t z = 0; z < n; ++z) current[z] = fits_[z].scan_from_cad.inverse();
+    std::vector<std::vector<char>> seen(n);
+    double cost = 0.0, weight = 0.0;
+    for (std::size_t z = 0; z < n; ++z) {
+      const Segment& segment = subdivision_.segments()[z];
+      seen[z].assign(static_cast<std::size_t>((segment.end_mm - segment.begin_mm) / kBinMm) + 1, 0);
+      fits_[z].pairs = 0;
+    }
+    assign_edges(current, systems, seen, cost, weight);
+    parallel_for(stability_.size(), 1, options_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t z = begin; z < end; ++z) add_stability(z, current[z], systems[z]);
+    });
+    std::vector<RigidMotion> next(n);
+    for (std::size_t z = 0; z < n; ++z) {
+      const double covered = static_cast<double>(std::count(seen[z].begin(), seen[z].end(), 1)) /
+                             static_cast<double>(seen[z].size());
+      fits_[z].from_data = covered >= kCoveredRatio;
+      next[z] = step(z, current[z], systems[z]);
+    }
+    for (std::size_t z = 0; z < n; ++z) fits_[z].scan_from_cad = next[z].inverse();
+    return weight > 0.0 ? std::sqrt(cost / weight) : 0.0;
+  }
+
+  /// Scan edge points to their feet; the reach shrinks with the robust scale.
+  void assign_edges(const std::vector<RigidMotion>& current, std::vector<NormalEquations>& systems,
+                    std::vector<std::vector<char>>& seen, double& cost, double& weight) {
+    const double across_scale_mm = kScaleSigmas * data_.sigma_across_mm * std::min(scale_, 50.0);
+    const double normal_scale_mm = kScaleSigmas * sigma_normal_mm_ * scale_;
+    const double across_weight = 1.0 / (data_.sigma_across_mm * data_.sigma_across_mm);
+    const double normal_weight = 1.0 / (sigma_normal_mm_ * sigma_normal_mm_);
+    const double reach_mm = 4.0 * std::max(across_scale_mm, scan_.spacing_mm);
+    std::vector<double> segment_cost(fits_.size(), 0.0), segment_weight(fits_.size(), 0.0);
+    for (const Eigen::Vector3d& e : data_.points_mm) {
+      const int home = nearest_segment(e, current, reach_mm);
+      if (home < 0) continue;
+      const EdgePair place = pair_edge(cad_, current[static_cast<std::size_t>(home)] * e, reach_mm);
+      if (place.contour != contour_) continue;
+      for (const int index : subdivision_.reaching(place.foot.arc_mm)) {
+        const std::size_t z = static_cast<std::size_t>(index);
+        const EdgePair pair = pair_edge(cad_, current[z] * e, 2.0 * reach_mm);
+        if (pair.contour != contour_) continue;
+        const double robust = geman_mcclure_weight(pair.across_mm * pair.across_mm, across_scale_mm) *
+                              geman_mcclure_weight(pair.normal_mm * pair.normal_mm, normal_scale_mm);
+        const Eigen::Vector3d x = current[z] * e - pivot(z);
+        systems[z].add(x, pair.across, pair.across_mm, robust * across_weight);
+        systems[z].add(x, pair.normal, pair.normal_mm, robust * normal_weight);
+        segment_cost[z] += robust * pair.across_mm * pair.across_mm;
+        segment_weight[z] += robust;
+        if (robust > 0.25) mark_seen(z, pair.foot.arc_mm, seen[z]);
+      }
+    }
+    for (std::size_t z = 0; z < fits_.size(); ++z) {
+      fits_[z].rms_mm = segment_weight[z] > 0.0 ? std::sqrt(segment_cost[z] / segment_weight[z]) : 0.0;
+      cost += segment_cost[z];
+      weight += segment_weight[z];
+    }
+  }
+
+  void mark_seen(std::size_t z, double arc_mm, std::vector<char>& bins) {
+    const Segment& segment = subdivision_.segments()[z];
+    double from_begin = arc_mm - segment.begin_mm;
+    if (curve_.closed() && from_begin < 0.0) from_begin += curve_.length_mm();
+    if (from_begin < 0.0 || from_begin > segment.end_mm - segment.begin_mm) return;
+    bins[std::min(bins.size() - 1, static_cast<std::size_t>(from_begin / kBinMm))] = 1;
+    ++fits_[z].pairs;
+  }
+
+  /// The segment under whose motion a scan point lies nearest the contour within that segment's reach.
+  int nearest_segment(const Eigen::Vector3d& e, const std::vector<RigidMotion>& current, double reach_mm) const {
+    // All motions are near each other: the first segment's foot tells the neighbourhood, a second look is exact.
+    const EdgePair first = pair_edge(cad_, current.front() * e, reach_mm + 60.0);
+    if (first.contour != contour_) return -1;
+    const std::vector<int> candidates = subdivision_.reaching(first.foot.arc_mm);
+    if (candidates.empty()) return -1;
+    const std::size_t z = static_cast<std::size_t>(candidates.front());
+    const EdgePair second = pair_edge(cad_, current[z] * e, reach_mm);
+    if (second.contour != contour_) return -1;
+    const std::vector<int> home = subdivision_.reaching(second.foot.arc_mm);
+    return home.empty() ? -1 : home.front();
+  }
+
+  void add_stability(std::size_t z, const RigidMotion& cad_from_scan, NormalEquations& system) const {
+    const double scale_mm = kScaleSigmas * sigma_normal_mm_ * scale_;
+    const double weight = 1.0 / (sigma_normal_mm_ * sigma_normal_mm_);
+    for (const StabilityPoint& sp : stability_[z]) {
+      const Eigen::Vector3d x = cad_from_scan * scan_.points_mm[sp.scan_index];
+      const SurfacePoint foot = cad_.surface.closest(x, 4.0 * scale_mm + scan_.spacing_mm);
+      if (foot.triangle < 0 || foot.on_border) continue;
+      if (std::abs(foot.normal.dot(cad_from_scan.linear() * scan_.normals[sp.scan_index])) < kCosNormalsAgree)
+        continue;
+      const double residual_mm = foot.normal.dot(x - foot.foot_mm);
+      system.add(x - pivot(z), foot.normal, residual_mm,
+                 weight * geman_mcclure_weight(residual_mm * residual_mm, scale_mm));
+    }
+  }
+
+  /// One step of segment z, tied softly to what its neighbours suggest.
+  RigidMotion step(std::size_t z, const RigidMotion& cad_from_scan, NormalEquations system) const {
+    Eigen::Matrix<double, 6, 1> prior;
+    const auto inverse2 = [](double sd) { return 1.0 / (sd * sd); };
+    prior << Eigen::Vector3d::Constant(inverse2(options_.neighbour_turn_rad)),
+        Eigen::Vector3d::Constant(inverse2(options_.neighbour_shift_mm));
+    const RigidMotion off = cad_from_scan * suggested(z).inverse();
+    Eigen::Vector3d turn;
+    log_angle(off, turn);
+    Eigen::Matrix<double, 6, 1> residual;
+    residual << turn, off * pivot(z) - pivot(z);
+    system.gradient += prior.cwiseProduct(residual);
+    return motion_of(system.solve(prior), pivot(z)) * cad_from_scan;
+  }
+
+  const CadModel& cad_;
+  const Curve& curve_;
+  int contour_;
+  const ScanModel& scan_;
+  const EdgeData& data_;
+  const SubdivisionIcpOptions& options_;
+  Subdivision subdivision_;
+  std::vector<SegmentFit> fits_;
+  std::vector<std::vector<StabilityPoint>> stability_;
+  double sigma_normal_mm_ = 0.0, scale_ = 1.0;
+};
+
+/// The paper's choices: contour points and all stability points of the surface, frozen partners for the latter.
+ContourMotion paper_fit(const Curve& curve, const ScanModel& scan, const EdgeData& data, const RigidMotion& rigid,
+                        const SubdivisionIcpOptions& options) {
+  const Subdivision subdivision(curve, options.subdivision);
+  const NearestPoints tree(data.points_mm);
+  const Contour model = resample(curve.contour(), std::max(0.5, scan.spacing_mm));
+  std::vector<Eigen::Vector3d> stability_model, stability_scan;
+  if (options.stability != StabilityPoints::kNone) {
+    const int count = options.stability_points;
+    for (int i = 0; i < count; ++i) {
+      const double s_mm = curve.length_mm() * i / count;
+      const Eigen::Vector3d inward = curve.normal(s_mm).cross(curve.tangent(s_mm)).normalized();
+      const Eigen::Vector3d p = curve.point_mm(s_mm) + options.stability_distance_mm * inward;
+      const Neighbour partner = scan.tree.nearest(rigid * p);
+      if (partner.index < 0) continue;
+      stability_model.push_back(p);
+      stability_scan.push_back(scan.points_mm[static_cast<std::size_t>(partner.index)]);
+    }
+  }
+  std::vector<SegmentFit> fits(subdivision.segments().size());
+  for (std::size_t z = 0; z < fits.size(); ++z) {
+    SegmentFit& fit = fits[z];
+    fit.scan_from_cad = rigid;
+    std::vector<Eigen::Vector3d> from, to;
+    for (const Eigen::Vector3d& p : model.points_mm) {
+      const std::vector<int> in = subdivision.reaching(curve.nearest(p).arc_mm);
+      if (std::find(in.begin(), in.end(), static_cast<int>(z)) != in.end()) from.push_back(p);
+    }
+    fit.pairs = static_cast<int>(from.size());
+    from.insert(from.end(), stability_model.begin(), stability_model.end());
+    to.resize(from.size());
+    std::copy(stability_scan.begin(), stability_scan.end(), to.begin() + fit.pairs);
+    double last_rms = 1e300;
+    fit.stop = "iteration limit";
+    for (int k = 0; k < options.max_iterations && tree.size() > 0; ++k) {
+      for (int i = 0; i < fit.pairs; ++i) {
+        const std::size_t index = static_cast<std::size_t>(i);
+        to[index] = data.points_mm[static_cast<std::size_t>(tree.nearest(fit.scan_from_cad * from[index]).index)];
+      }
+      const RigidFit rigid_fit = fit_rigid(from, to);
+      if (!rigid_fit.usable()) {
+        fit.from_data = false;
+        fit.stop = rigid_fit.reason;
+        break;
+      }
+      fit.scan_from_cad = rigid_fit.to_from;
+      fit.rms_mm = rigid_fit.rms_mm;
+      fit.iterations = k + 1;
+      if (std::abs(last_rms - fit.rms_mm) <= options.stop_change_ratio * fit.rms_mm) {
+        fit.stop = "converged";
+        break;
+      }
+      last_rms = fit.rms_mm;
+    }
+  }
+  return {curve, subdivision, fits};
+}
+
+}  // namespace
+
+void SubdivisionIcpOptions::check() const {
+  subdivision.check();
+  if (max_iterations < 1)
+    throw Error(Fault::kRecipe, {.what = "registration.subdivision.max_iterations is out of range",
+                                 .found = std::to_string(max_iterations), .needed = "1 or more"});
+  if (stability_points < 0)
+    throw Error(Fault::kRecipe, {.what = "registration.subdivision.stability_points is out of range",
+                                 .found = std::to_string(stability_points), .needed = "0 or more"});
+}
+
+std::vector<ContourMotion> subdivision_icp(const CadModel& cad, const ScanModel& scan, const EdgeData& data,
+                                           const RigidMotion& rigid_scan_from_cad,
+                                           const SubdivisionIcpOptions& options) {
+  options.check();
+  std::vector<ContourMotion> motions;
+  for (std::size_t c = 0; c < cad.contours.size(); ++c) {
+    if (options.match == SegmentMatch::kPaper)
+      motions.push_back(paper_fit(cad.contours[c], scan, data, rigid_scan_from_cad, options));
+    else
+      motions.push_back(FootFit(cad, c, scan, data, rigid_scan_from_cad, options).run());
+  }
+  return motions;
+}
+
+}  // namespace arris
