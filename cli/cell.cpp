@@ -1,0 +1,215 @@
+#include "cli/cell.hpp"
+
+#include <cmath>
+#include <set>
+
+#include "cli/text_file.hpp"
+
+namespace arris {
+namespace {
+
+/// Tables that later versions fill: lines of the station's own computer.
+const std::set<std::string> kReserved = {"gpio"};
+
+void add_pose(std::vector<Key>& keys, const std::string& name, CellFile::Pose& pose, const std::string& about,
+              bool required) {
+  keys.push_back({.name = "frames." + name + ".xyz_mm",
+                  .slot = &pose.xyz_mm,
+                  .about = about + ": origin",
+                  .required = required,
+                  .lengths = {3}});
+  keys.push_back({.name = "frames." + name + ".quat_wxyz",
+                  .slot = &pose.quat_wxyz,
+                  .about = about + ": unit quaternion, w first",
+                  .required = required,
+                  .lengths = {4}});
+}
+
+std::vector<Key> frame_keys(CellFile& file) {
+  std::vector<Key> keys = {
+      {.name = "frames.scan_reference",
+       .slot = &file.scan_reference,
+       .about = "fixed: a mounted scanner; targets: a hand scanner, whose frame changes every time",
+       .words = {"fixed"},
+       .later = {"targets"}},
+      {.name = "frames.references",
+       .slot = &file.references,
+       .about = "positions of the fixture targets (csv), for scan_reference = \"targets\"",
+       .example = "\"fixture_targets.csv\""},
+      {.name = "frames.references_max_residual_mm",
+       .slot = &file.references_max_residual_mm,
+       .about = "targets that fit worse are refused",
+       .min = 1e-6,
+       .max = 1000.0},
+  };
+  add_pose(keys, "robot_from_scan", file.robot_from_scan, "scanner's frame in the robot's base", true);
+  add_pose(keys, "robot_from_work", file.robot_from_work, "work object in the robot's base", false);
+  return keys;
+}
+
+std::vector<Key> tool_keys(CellFile& file) {
+  Cell& cell = file.cell;
+  return {
+      {.name = "tool.name", .slot = &cell.tool_name, .about = "tool data in the robot program"},
+      {.name = "tool.define",
+       .slot = &cell.define_tool,
+       .about = "write the tool data; false: the controller has it under that name"},
+      {.name = "tool.xyz_mm",
+       .slot = &file.flange_from_tool.xyz_mm,
+       .about = "tip of the tool in the flange's frame",
+       .lengths = {3}},
+      {.name = "tool.quat_wxyz",
+       .slot = &file.flange_from_tool.quat_wxyz,
+       .about = "turn of the tool in the flange's frame: unit quaternion, w first; z leaves the flange",
+       .lengths = {4}},
+      {.name = "tool.mass_kg",
+       .slot = &cell.tool_mass_kg,
+       .about = "mass; controllers refuse 0",
+       .min = 1e-3,
+       .max = 999.0},
+      {.name = "tool.centre_mm",
+       .slot = &file.tool_centre_mm,
+       .about = "centre of gravity in the flange's frame",
+       .lengths = {3}},
+  };
+}
+
+std::vector<Key> program_keys(CellFile& file) {
+  Cell& cell = file.cell;
+  return {
+      {.name = "robot.program_name",
+       .slot = &cell.program_name,
+       .about = "module; the dry-run twin adds Dry"},
+      {.name = "robot.entry_name", .slot = &cell.entry_name, .about = "procedure that the controller starts"},
+      {.name = "robot.work_name", .slot = &cell.work_name, .about = "work object in the robot program"},
+      {.name = "robot.define_work",
+       .slot = &cell.define_work,
+       .about = "write the work object; false: the controller has it, equal to robot_from_work"},
+      {.name = "robot.approach_speed_mm_s",
+       .slot = &cell.approach_speed_mm_s,
+       .about = "speed of approach, retract and air moves",
+       .min = 0.1,
+       .max = 7000.0},
+      {.name = "robot.cut_speed_mm_s",
+       .slot = &cell.cut_speed_mm_s,
+       .about = "speed along the path where neither path nor recipe says one",
+       .min = 0.1,
+       .max = 7000.0},
+      {.name = "robot.turn_speed_deg_s",
+       .slot = &file.turn_speed_deg_s,
+       .about = "speed of the tool's turns",
+       .min = 1.0,
+       .max = 500.0},
+      {.name = "robot.zone_mm",
+       .slot = &cell.zone_mm,
+       .about = "rounding of corners between rows, never more than half a step; 0: stop at each",
+       .min = 0.0,
+       .max = 200.0},
+      {.name = "robot.clearance_mm",
+       .slot = &cell.clearance_mm,
+       .about = "height above the first and last row of a polyline, along the tool's axis",
+       .min = 0.001,
+       .max = 2000.0},
+      {.name = "robot.dry_run_offset_mm",
+       .slot = &cell.dry_run_offset_mm,
+       .about = "the dry-run twin stays this far off, along the tool's axis",
+       .min = 0.001,
+       .max = 2000.0},
+      {.name = "robot.dry_run_speed_ratio",
+       .slot = &cell.dry_run_speed_ratio,
+       .about = "speeds of the dry-run twin to those of the program",
+       .min = 0.001,
+       .max = 1.0},
+      {.name = "robot.reach_mm",
+       .slot = &cell.reach_mm,
+       .about = "a pose farther from the robot's base is refused",
+       .min = 1.0,
+       .max = 1e6},
+      {.name = "robot.max_points",
+       .slot = &cell.max_points,
+       .about = "moves a procedure; longer programs are split",
+       .min = 10.0,
+       .max = 1e6},
+      {.name = "robot.spindle_output",
+       .slot = &cell.spindle_output,
+       .about = "robot output that switches the tool; \"\": the program does not switch it"},
+      {.name = "robot.spindle_ready",
+       .slot = &cell.spindle_ready,
+       .about = "robot input waited for after switching on; \"\": not waited for"},
+      {.name = "robot.ready_timeout_s",
+       .slot = &cell.ready_timeout_s,
+       .about = "then the tool is switched off and the program ends",
+       .min = 0.001,
+       .max = 3600.0},
+  };
+}
+
+Eigen::Vector3d vector_of(const std::vector<double>& v) {
+  return {v.at(0), v.at(1), v.at(2)};
+}
+
+/// The motion a pose spells. Throws Error(kRecipe) when the quaternion is farther than 0.001 from unit
+/// length.
+RigidMotion motion_of(const std::string& name, const CellFile::Pose& pose) {
+  const std::vector<double>& q = pose.quat_wxyz;
+  Eigen::Quaterniond turn(q.at(0), q.at(1), q.at(2), q.at(3));
+  if (std::abs(turn.norm() - 1.0) > 1e-3)
+    throw Error(Fault::kRecipe, ErrorText{name + ".quat_wxyz is no rotation",
+                                          {},
+                                          "length " + std::to_string(turn.norm()),
+                                          "a quaternion of length 1"});
+  RigidMotion motion = RigidMotion::Identity();
+  motion.linear() = turn.normalized().toRotationMatrix();
+  motion.translation() = vector_of(pose.xyz_mm);
+  return motion;
+}
+
+Cell cell_of(const CellFile& file) {
+  Cell cell = file.cell;
+  cell.robot_from_scan = motion_of("frames.robot_from_scan", file.robot_from_scan);
+  cell.robot_from_work = motion_of("frames.robot_from_work", file.robot_from_work);
+  cell.flange_from_tool = motion_of("tool", file.flange_from_tool);
+  cell.tool_centre_mm = vector_of(file.tool_centre_mm);
+  cell.turn_speed_rad_s = file.turn_speed_deg_s * 3.14159265358979323846 / 180.0;
+  cell.check();
+  return cell;
+}
+
+}  // namespace
+
+std::vector<Key> cell_keys(CellFile& file) {
+  std::vector<Key> keys;
+  for (auto part : {frame_keys(file), tool_keys(file), program_keys(file)})
+    keys.insert(keys.end(), part.begin(), part.end());
+  return keys;
+}
+
+CellRead parse_cell(const std::filesystem::path& file, const std::string& text) {
+  CellRead result;
+  result.problems = read_keys(file, text, cell_keys(result.file), kReserved).problems;
+  if (!result.problems.empty()) return result;
+  try {
+    result.cell = cell_of(result.file);
+  } catch (const Error& error) {
+    result.problems.push_back({error.what(), file.string()});
+  }
+  return result;
+}
+
+Cell read_cell(const std::filesystem::path& file) {
+  CellRead read = parse_cell(file, read_text_file(file, "cell"));
+  if (read.problems.empty()) return read.cell;
+  throw Error(Fault::kRecipe, read.problems.front());
+}
+
+std::string print_cell(const CellFile& file, const std::filesystem::path& folder) {
+  CellFile copy = file;
+  return "# Arris cell: what is true of one station. Every key stands here with its value; one that keeps "
+         "its\n"
+         "# default may be left out. * must be given. Lengths are mm, angles degrees, paths relative to this "
+         "file.\n" +
+         print_keys(cell_keys(copy), folder) +
+         "\n# The lines of the station's own computer; a later version reads them.\n[gpio]\n";
+}
+
+}  // namespace arris

@@ -1,0 +1,248 @@
+// The only file that knows CLI11.
+#include "cli/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "cli/commands.hpp"
+#include "cli/console.hpp"
+#include "cli/key_table.hpp"
+#include "cli/version.hpp"
+
+namespace arris {
+namespace {
+
+/// What every command shares.
+struct Common {
+  bool json = false;
+  int threads = 0;
+};
+
+/// The command that was chosen, to be run when the whole line has been read.
+using Chosen = std::function<int()>;
+
+CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& about,
+                      const std::string& example) {
+  CLI::App* command = app.add_subcommand(name, about);
+  command->footer("Example:\n  " + example + "\n\nEvery command takes --threads N, --json and --help.");
+  return command;
+}
+
+void add_run(CLI::App& app, const Common& common, Chosen& chosen, bool inspect) {
+  const auto args = std::make_shared<RunArgs>();
+  args->inspect_only = inspect;
+  CLI::App* command =
+      inspect ? add_command(app, "inspect",
+                            "Compare a scan with its drawing: shape, contours, report; no tool path",
+                            "arris inspect bracket.toml --scan part7.ply --out part7")
+              : add_command(app, "run", "The main job: scan in; corrected path, robot program and report out",
+                            "arris run bracket.toml --scan part7.ply --cell cell.toml");
+  command->add_option("recipe", args->recipe, "recipe of the part number (arris recipe print explains it)")
+      ->required()
+      ->type_name("RECIPE");
+  command->add_option("--scan", args->scan, "scan of the part (ply, stl, pcd, off, text)")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--out", args->out, "folder of the results; <scan>.arris unless given")
+      ->type_name("DIR");
+  command->add_option("--contours", args->contours, "the operator's choice, from arris contours --accept")
+      ->type_name("FILE");
+  if (!inspect)
+    command->add_option("--cell", args->cell, "station file; replaces the one the recipe names")
+        ->type_name("FILE");
+  command->add_flag("--force", args->force, "replace the folder of the results when it exists");
+  command->callback([args, &common, &chosen] {
+    args->json = common.json;
+    args->threads = common.threads;
+    chosen = [args] { return run_main_job(*args); };
+  });
+}
+
+void add_contours(CLI::App& app, const Common& common, Chosen& chosen) {
+  const auto args = std::make_shared<ContoursArgs>();
+  CLI::App* command =
+      add_command(app, "contours", "List and draw the contours of a mesh or scan; choose among them",
+                  "arris contours part7.ply --png loops.png --accept 1,4 --out contours.json");
+  command->add_option("file", args->file, "mesh of the drawing, or a scan")->required()->type_name("FILE");
+  command->add_option("--recipe", args->recipe, "recipe whose units and [contour] options are used")
+      ->type_name("FILE");
+  command->add_option("--units", args->units, "unit of the file when there is no recipe: mm, cm, m, inch")
+      ->check(CLI::IsMember({"mm", "cm", "m", "inch"}))
+      ->type_name("UNIT");
+  command->add_option("--accept", args->accept, "ids to accept; all others are rejected")
+      ->delimiter(',')
+      ->type_name("IDS");
+  command->add_option("--out", args->out, "write the choice here, for arris run --contours")
+      ->type_name("FILE");
+  command->add_option("--png", args->png, "draw the contours")->type_name("FILE");
+  command->callback([args, &common, &chosen] {
+    args->json = common.json;
+    args->threads = common.threads;
+    chosen = [args] { return run_contours(*args); };
+  });
+}
+
+void add_info(CLI::App& app, const Common& common, Chosen& chosen) {
+  const auto args = std::make_shared<InfoArgs>();
+  CLI::App* command = add_command(app, "info", "What a scan or mesh file holds", "arris info part7.ply");
+  command->add_option("file", args->file, "scan or mesh")->required()->type_name("FILE");
+  command->callback([args, &common, &chosen] {
+    args->json = common.json;
+    chosen = [args] { return run_info(*args); };
+  });
+}
+
+void add_recipe_check(CLI::App& recipe, const Common& common, Chosen& chosen) {
+  const auto args = std::make_shared<RecipeCheckArgs>();
+  CLI::App* command =
+      add_command(recipe, "check", "Say all that is wrong in a recipe, and in the cell it names",
+                  "arris recipe check bracket.toml");
+  command->add_option("file", args->file, "recipe, or cell with --cell")->required()->type_name("FILE");
+  command->add_flag("--cell", args->is_cell, "the file is a cell");
+  command->callback([args, &common, &chosen] {
+    args->json = common.json;
+    chosen = [args] { return run_recipe_check(*args); };
+  });
+}
+
+void add_recipe_print(CLI::App& recipe, Chosen& chosen) {
+  const auto args = std::make_shared<RecipePrintArgs>();
+  CLI::App* command =
+      add_command(recipe, "print", "Print a recipe with every key, its value and what it means",
+                  "arris recipe print bracket.toml > full.toml");
+  command->add_option("file", args->file, "recipe, or cell with --cell; the defaults without it")
+      ->type_name("FILE");
+  command->add_flag("--cell", args->is_cell, "print a cell");
+  command->callback([args, &chosen] { chosen = [args] { return run_recipe_print(*args); }; });
+}
+
+void add_recipe_new(CLI::App& recipe, Chosen& chosen) {
+  const auto args = std::make_shared<RecipeNewArgs>();
+  CLI::App* command =
+      add_command(recipe, "new", "Write a first recipe for a drawing",
+                  "arris recipe new --cad bracket.stl --path deburr.csv --part A-1042 > bracket.toml");
+  command->add_option("--cad", args->cad, "mesh of the drawing")->required()->type_name("FILE");
+  command->add_option("--path", args->path, "nominal tool path (csv)")->type_name("FILE");
+  command->add_option("--part", args->part, "part number; the name of the mesh unless given")
+      ->type_name("NUMBER");
+  command->add_option("--units", args->units, "unit of the mesh and the scans: mm, cm, m, inch")
+      ->check(CLI::IsMember({"mm", "cm", "m", "inch"}))
+      ->type_name("UNIT");
+  command->add_option("--out", args->out, "write the recipe here instead of to the screen")
+      ->type_name("FILE");
+  command->callback([args, &chosen] { chosen = [args] { return run_recipe_new(*args); }; });
+}
+
+void add_recipe(CLI::App& app, const Common& common, Chosen& chosen) {
+  CLI::App* command =
+      add_command(app, "recipe", "Check, print or begin a recipe", "arris recipe check bracket.toml");
+  command->require_subcommand(1);
+  add_recipe_check(*command, common, chosen);
+  add_recipe_print(*command, chosen);
+  add_recipe_new(*command, chosen);
+}
+
+void add_demo(CLI::App& app, const Common& common, Chosen& chosen) {
+  const auto args = std::make_shared<DemoArgs>();
+  CLI::App* command =
+      add_command(app, "demo", "The main job on a built-in part", "arris demo --out /tmp/demo");
+  command->add_option("--out", args->out, "folder of the demo; one that it made before is replaced")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command->add_option("--part", args->part, "built-in part: porthole, nosecone, sheet")
+      ->check(CLI::IsMember({"porthole", "nosecone", "sheet"}))
+      ->type_name("NAME")
+      ->capture_default_str();
+  command->callback([args, &common, &chosen] {
+    args->json = common.json;
+    args->threads = common.threads;
+    chosen = [args] { return run_demo(*args); };
+  });
+}
+
+std::vector<std::string> names_of(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
+}
+
+/// The command that the line was read as, as far as it was.
+const CLI::App& innermost(const CLI::App& app) {
+  const CLI::App* found = &app;
+  while (!found->get_subcommands().empty()) found = found->get_subcommands().front();
+  return *found;
+}
+
+std::vector<std::string> options_of(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* level = &app; level != nullptr; level = level->get_parent())
+    for (const CLI::Option* option : level->get_options())
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+/// The full name of a command: "arris recipe check".
+std::string full_name(const CLI::App& app) {
+  return app.get_parent() == nullptr ? "arris" : full_name(*app.get_parent()) + " " + app.get_name();
+}
+
+/// The first word that no option or command took, with what was probably meant.
+ErrorText unexpected(const CLI::App& app, const std::string& word) {
+  const CLI::App& command = innermost(app);
+  const bool option = word.starts_with("-");
+  const std::vector<std::string> names = names_of(command);
+  ErrorText text{option ? full_name(command) + " has no option " + word
+                        : (names.empty() ? full_name(command) + " does not take " + quote(word)
+                                         : full_name(command) + " has no command " + quote(word))};
+  const std::string near = nearest_name(word.substr(0, word.find('=')), option ? options_of(command) : names);
+  text.next = near.empty() ? full_name(command) + " --help" : "did you mean " + near + "?";
+  return text;
+}
+
+[[noreturn]] void usage_error(const CLI::App& app, const CLI::ParseError& error) {
+  if (const std::vector<std::string> rest = app.remaining(true); !rest.empty())
+    throw Error(Fault::kUsage, unexpected(app, rest.front()));
+  ErrorText text{error.what()};
+  text.next = full_name(innermost(app)) + " --help";
+  throw Error(Fault::kUsage, text);
+}
+
+}  // namespace
+
+int run_command_line(int argc, const char* const* argv) {
+  CLI::App app(
+      "Arris finds how a scanned part lies and is bent, corrects the tool path, and says how good it is.",
+      "arris");
+  Common common;
+  Chosen chosen;
+  app.set_version_flag("--version", version());
+  app.add_flag("--json", common.json, "results as JSON on stdout");
+  app.add_option("--threads", common.threads, "threads to use; 0: one a core")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N");
+  app.fallthrough();
+  app.require_subcommand(1);
+  app.footer(
+      "Example:\n  arris run bracket.toml --scan part7.ply --out part7\n\narris COMMAND --help says more.");
+  add_run(app, common, chosen, false);
+  add_run(app, common, chosen, true);
+  add_contours(app, common, chosen);
+  add_info(app, common, chosen);
+  add_recipe(app, common, chosen);
+  add_demo(app, common, chosen);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    console::print(innermost(app).help("", CLI::AppFormatMode::Normal));
+    return 0;
+  } catch (const CLI::CallForVersion&) {
+    console::print(version());
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    usage_error(app, error);
+  }
+  return chosen();
+}
+
+}  // namespace arris

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/cmd_run.hpp"
+
+namespace arris {
+
+/// `arris contours FILE`: lists, draws and chooses contours.
+struct ContoursArgs {
+  std::filesystem::path file;
+  std::optional<std::filesystem::path> recipe, out, png;
+  std::vector<int> accept;   ///< ids the operator accepts; the others are rejected
+  std::string units = "mm";  ///< of the file, when no recipe says
+  bool json = false;
+  int threads = 0;
+};
+[[nodiscard]] int run_contours(const ContoursArgs& args);
+
+/// `arris info FILE`
+struct InfoArgs {
+  std::filesystem::path file;
+  bool json = false;
+};
+[[nodiscard]] int run_info(const InfoArgs& args);
+
+/// `arris recipe check|print|new`
+struct RecipeCheckArgs {
+  std::filesystem::path file;
+  bool is_cell = false;
+  bool json = false;
+};
+[[nodiscard]] int run_recipe_check(const RecipeCheckArgs& args);
+
+struct RecipePrintArgs {
+  std::optional<std::filesystem::path> file;  ///< none: the defaults
+  bool is_cell = false;
+};
+[[nodiscard]] int run_recipe_print(const RecipePrintArgs& args);
+
+struct RecipeNewArgs {
+  std::filesystem::path cad;
+  std::optional<std::filesystem::path> path, out;  ///< out: where the recipe is written; none: stdout
+  std::string part, units = "mm";
+};
+[[nodiscard]] int run_recipe_new(const RecipeNewArgs& args);
+
+/// `arris demo`
+struct DemoArgs {
+  std::filesystem::path out = "arris-demo";
+  std::string part = "porthole";
+  bool json = false;
+  int threads = 0;
+};
+[[nodiscard]] int run_demo(const DemoArgs& args);
+
+}  // namespace arris

@@ -1,0 +1,64 @@
+#include "cli/console.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "acquisition/types/error.hpp"
+#include "cli/interrupt.hpp"
+
+namespace arris::console {
+namespace {
+
+std::string one_line(std::string_view text) {
+  std::string line(text);
+  for (char& c : line)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  return line;
+}
+
+/// After a write to stdout that failed: the reader left (no error), or the disk is full.
+void check_stdout(bool good) {
+  if (good || errno == EPIPE) return;
+  throw Error(Fault::kInput, {"the output cannot be written", "stdout", std::strerror(errno), {}, {}});
+}
+
+void write_error(const std::string& line) {
+  std::fwrite(line.data(), 1, line.size(), stderr);
+}
+
+}  // namespace
+
+void print(std::string_view line) {
+  const std::string text = std::string(line) + '\n';
+  check_stdout(std::fwrite(text.data(), 1, text.size(), stdout) == text.size());
+}
+
+void complain(std::string_view line) {
+  write_error("arris: " + one_line(line) + "\n");
+}
+
+void note(std::string_view line) {
+  write_error("arris: note: " + one_line(line) + "\n");
+}
+
+void flush() {
+  check_stdout(std::fflush(stdout) == 0);
+}
+
+Progress::Progress() : shown_(::isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() {
+  if (dirty_) write_error("\r\033[K");
+}
+
+void Progress::stage(int step, int steps, std::string_view what) {
+  stop_if_interrupted();
+  if (!shown_) return;
+  write_error("\r\033[K" + std::to_string(step) + "/" + std::to_string(steps) + " " + one_line(what));
+  dirty_ = true;
+}
+
+}  // namespace arris::console

@@ -1,0 +1,76 @@
+#include "cli/recipe.hpp"
+
+#include <algorithm>
+
+#include "cli/text_file.hpp"
+
+namespace arris {
+namespace {
+
+const std::set<std::string> kPresenceTables = {"scan.initial", "toolpath.from_contour"};
+
+/// What no single key can say: combinations. Where is the table they stand in.
+void check_together(const std::filesystem::path& file, const Recipe& recipe,
+                    std::vector<ErrorText>& problems) {
+  const auto where = [&](const std::string& table) { return file.string() + ", [" + table + "]"; };
+  const auto add = [&](ErrorText problem) { problems.push_back(std::move(problem)); };
+  if (!recipe.toolpath.file.empty() && recipe.toolpath.from_contour.given)
+    add({"the tool path is given twice", where("toolpath"), "file and from_contour", "one of them",
+         "remove [toolpath.from_contour] or toolpath.file"});
+  if (recipe.scan.initial.given && recipe.scan.initial.scan_from_cad.empty())
+    add({"scan.initial has no pose", where("scan.initial"), {}, "scan_from_cad, 16, 12 or 7 numbers", {}});
+  for (const int id : recipe.contour.accept)
+    if (std::find(recipe.contour.reject.begin(), recipe.contour.reject.end(), id) !=
+        recipe.contour.reject.end())
+      add({"contour " + std::to_string(id) + " is both accepted and rejected",
+           where("contour"),
+           {},
+           {},
+           "remove it from contour.accept or contour.reject"});
+  if (recipe.contour.stock_mm > 0.0 && recipe.contour.role == "edge")
+    add({"contour.stock_mm belongs to role = \"cut\"",
+         where("contour"),
+         {},
+         "stock_mm = 0 with role = \"edge\"",
+         {}});
+}
+
+}  // namespace
+
+RecipeRead parse_recipe(const std::filesystem::path& file, const std::string& text) {
+  RecipeRead result;
+  const std::vector<Key> keys = recipe_keys(result.recipe);
+  KeysRead read = read_keys(file, text, keys);
+  result.recipe.scan.initial.given = read.tables.contains("scan.initial");
+  result.recipe.toolpath.from_contour.given = read.tables.contains("toolpath.from_contour");
+  result.problems = std::move(read.problems);
+  if (result.problems.empty()) check_together(file, result.recipe, result.problems);
+  return result;
+}
+
+Recipe read_recipe(const std::filesystem::path& file) {
+  RecipeRead read = parse_recipe(file, read_text_file(file, "recipe"));
+  if (read.problems.empty()) return read.recipe;
+  throw Error(Fault::kRecipe, read.problems.front());
+}
+
+std::string print_recipe(const Recipe& recipe, const std::filesystem::path& folder) {
+  Recipe copy = recipe;
+  std::set<std::string> absent = kPresenceTables;
+  if (recipe.scan.initial.given) absent.erase("scan.initial");
+  if (recipe.toolpath.from_contour.given) absent.erase("toolpath.from_contour");
+  return "# Arris recipe: one part number. Every key stands here with its value; one that keeps its default "
+         "may be\n"
+         "# left out. * must be given. Lengths are mm, angles degrees, paths relative to this file.\n" +
+         print_keys(recipe_keys(copy), folder, absent);
+}
+
+double unit_mm(const std::string& unit) {
+  if (unit == "mm") return 1.0;
+  if (unit == "cm") return 10.0;
+  if (unit == "m") return 1000.0;
+  if (unit == "inch") return 25.4;
+  throw Error(Fault::kBug, "unit_mm: no unit '" + unit + "'");
+}
+
+}  // namespace arris
