@@ -96,8 +96,8 @@ void AtomicFolder::check_replaceable() const {
     throw refuse("the home folder or one above it", "a folder of results");
   const bool folder = fs::is_directory(fs::symlink_status(target_, failed));
   if (!mark_.empty() && !is_empty_folder(target_) && !(folder && fs::exists(target_ / mark_, failed)))
-    throw refuse(folder ? "a folder without " + mark_ : "no folder",
-                 "a folder that holds " + mark_ + ", or is empty");
+    throw refuse(folder ? std::string("a folder without ").append(mark_) : "no folder",
+                 std::string("a folder that holds ").append(mark_).append(", or is empty"));
 }
 
 void AtomicFolder::commit() {
