@@ -79,6 +79,29 @@ TEST(SurfaceQuery, IsTheBruteForceDistanceNearAndFar) {
   }
 }
 
+TEST(SurfaceQuery, FloatTreeNeverHidesTheNearest) {
+  // Specks around a query that lies 500 mm from the mesh's centre, where floats are 30 nm apart: in floats
+  // their order is scrambled, the nearest must be found all the same. Each is there eight times, to fill
+  // leaves.
+  Random random(14);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Eigen::Vector3d q_mm = Eigen::Vector3d(300.0, -310.0, 290.0) + random.in_cube_mm(1.0);
+    TriangleMesh mesh = moved(box_mesh(Eigen::Vector3d::Ones()), far_motion(-700.0));
+    double nearest_mm = 2.0;
+    for (int speck = 0; speck < 300; ++speck) {
+      const Eigen::Vector3d out = random.direction();
+      const Eigen::Vector3d across = out.unitOrthogonal();
+      const double near_mm = 1.0 + random.uniform(0.0, 1e-5);
+      nearest_mm = std::min(nearest_mm, near_mm);
+      const auto first = static_cast<std::int32_t>(mesh.vertices_mm.size());
+      for (const double side : {0.0, -2e-6, 2e-6})
+        mesh.vertices_mm.push_back(q_mm + (near_mm + std::abs(side)) * out + side * across);
+      mesh.triangles.insert(mesh.triangles.end(), 8, {first, first + 1, first + 2});
+    }
+    EXPECT_NEAR(SurfaceQuery(mesh).closest(q_mm).distance_mm, nearest_mm, 1e-9);
+  }
+}
+
 TEST(SurfaceQuery, FootIsWhereItsBarycentricCoordinatesSay) {
   const TriangleMesh mesh = triangle_soup(100, 3);
   const SurfaceQuery surface(mesh);
