@@ -47,7 +47,7 @@ string ascii(string text) {
   return text;
 }
 
-// Names for values that are written once and used often: v1, v2, ... in the order of first use.
+// Names for values that are written once and used often: vPath1, vPath2, ... in the order of first use.
 class Named {
  public:
   explicit Named(string stem) : stem_(std::move(stem)) {}
@@ -71,9 +71,9 @@ class Writer {
 
   string run(const std::function<string(std::string_view)>& sha256_hex) {
     for (const Event& event : program_.events) std::visit([&](const auto& e) { take(e); }, event);
-    const string head = "MODULE " + program_.name + "\n" + comments();
-    const string body = data() + procedures() + "ENDMODULE\n";
-    return head + "  ! body_sha256 = " + sha256_hex(head + body) + "\n" + body;
+    const string head = "MODULE " + program_.name + "\n" + comments() + "  ! body_sha256 = ";
+    const string body = "\n" + data() + procedures() + "ENDMODULE\n";
+    return head + sha256_hex(head + body) + body;
   }
 
  private:
@@ -150,9 +150,9 @@ class Writer {
       text += "  PERS wobjdata " + cell_.work_name + ":=[FALSE,TRUE,\"\"," +
               pose_text(cell_.robot_from_work) + ",[[0,0,0],[1,0,0,0]]];\n";
     for (std::size_t i = 0; i < speeds_.order().size(); ++i)
-      text += "  CONST speeddata v" + std::to_string(i + 1) + ":=" + speeds_.order()[i] + ";\n";
+      text += "  CONST speeddata vPath" + std::to_string(i + 1) + ":=" + speeds_.order()[i] + ";\n";
     for (std::size_t i = 0; i < zones_.order().size(); ++i)
-      text += "  CONST zonedata z" + std::to_string(i + 1) + ":=" + zones_.order()[i] + ";\n";
+      text += "  CONST zonedata zPath" + std::to_string(i + 1) + ":=" + zones_.order()[i] + ";\n";
     if (waits_) text += "  VAR bool bReadyLate:=FALSE;\n";
     return text + targets_;
   }
@@ -179,7 +179,7 @@ class Writer {
 
   const Program& program_;
   const Cell& cell_;
-  Named speeds_{"v"}, zones_{"z"};
+  Named speeds_{"vPath"}, zones_{"zPath"};
   Eigen::Vector4d turn_ = Eigen::Vector4d::UnitX();
   string targets_;
   std::vector<string> parts_;

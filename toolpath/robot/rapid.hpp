@@ -11,7 +11,7 @@ namespace arris {
 /// An ABB RAPID module (RobotWare 6 and 7): tool, work object, speeds, zones, targets, then the entry
 /// procedure.
 ///   head      comments under the MODULE line: what was given, result_hash, body_sha256
-///   body_sha256   sha256_hex of the whole text without the line that holds it
+///   body_sha256   sha256_hex of the whole text without the digits of body_sha256 itself
 ///   outputs   behind moves with zone `fine` alone, so that the program pointer cannot run ahead of the tool;
 ///   a tool
 ///             that is not ready in time, and any error, switches the tool output off

@@ -37,9 +37,9 @@ const std::set<string> kReserved = {
     "num",       "string",  "movej",    "movel",    "setdo",     "waitdi",    "confj",     "confl",
     "tpwrite",   "fine",    "offs",     "tool0",    "wobj0",     "breadylate"};
 
-// p12, v3, z4, part5: targets, speeds, zones and procedures of the module.
+// p12, vPath3, zPath4, part5: targets, speeds, zones and procedures of the module.
 bool is_ours(const string& name) {
-  for (const char* stem : {"p", "v", "z", "part"}) {
+  for (const char* stem : {"p", "vpath", "zpath", "part"}) {
     const string prefix = stem;
     if (name.size() > prefix.size() && name.compare(0, prefix.size(), prefix) == 0 &&
         std::all_of(name.begin() + static_cast<std::ptrdiff_t>(prefix.size()), name.end(), is_digit))

@@ -1,0 +1,148 @@
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "acquisition/types/error.hpp"
+#include "tests/toolpath/programs.hpp"
+#include "toolpath/robot/compare.hpp"
+#include "toolpath/robot/rapid.hpp"
+#include "toolpath/robot/read_rapid.hpp"
+
+namespace arris {
+namespace {
+
+using test::random_program;
+using test::toy_hash;
+
+// Degrees between a rotation and a quaternion, by the quaternion's own rotation formula written out.
+double turn_deg(const Eigen::Matrix3d& meant, const std::array<double, 4>& q) {
+  const double w = q[0], x = q[1], y = q[2], z = q[3];
+  Eigen::Matrix3d read;
+  read << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z),
+      1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x),
+      1 - 2 * (x * x + y * y);
+  return (read - meant).norm() / std::sqrt(2.0) * 57.29577951308232;  // chord of the angle; small angles
+}
+
+TEST(RapidRoundTrip, TenThousandPosesComeBackWithinAThousandth) {
+  const Program meant = random_program(1, 10000);
+  const std::string text = write_rapid(meant, toy_hash);
+  const Reading read = read_rapid(text, "program.mod");
+  ASSERT_EQ(read.events.size(), meant.events.size());
+  double worst_mm = 0.0, worst_deg = 0.0;
+  int poses = 0;
+  for (std::size_t i = 0; i < meant.events.size(); ++i) {
+    ASSERT_EQ(read.events[i].index(), meant.events[i].index()) << i;
+    const auto* move = std::get_if<Move>(&meant.events[i]);
+    if (move == nullptr) continue;
+    ++poses;
+    const ReadPose& pose = std::get<ReadMove>(read.events[i]).pose;
+    const Eigen::Vector3d xyz_mm(pose.xyz_mm[0], pose.xyz_mm[1], pose.xyz_mm[2]);
+    worst_mm = std::max(worst_mm, (xyz_mm - move->work_from_tool.translation()).norm());
+    worst_deg = std::max(worst_deg, turn_deg(move->work_from_tool.linear(), pose.quat_wxyz));
+  }
+  std::cout << poses << " poses, worst " << worst_mm << " mm, " << worst_deg << " deg\n";
+  EXPECT_EQ(poses, 10000);
+  EXPECT_LE(worst_mm, 0.001);
+  EXPECT_LE(worst_deg, 0.001);
+  EXPECT_EQ(differences(meant, read, toy_hash), std::vector<std::string>());
+  EXPECT_EQ(text.find("-0.0000,"), std::string::npos);
+  EXPECT_EQ(read.longest_procedure, 5000);
+}
+
+TEST(RapidRoundTrip, ProgramsOfCorrectionsComeBack) {
+  for (bool dry_run : {false, true}) {
+    for (Spin spin : {Spin::kFixed, Spin::kTangent, Spin::kLeastTurn}) {
+      Correction correction = test::ring(90, 60.0, true);
+      for (const CorrectedPoint& row : test::ring(40, 25.0, false, 2).points)
+        correction.points.push_back(row);
+      ProgramOptions options;
+      options.dry_run = dry_run;
+      options.spin = spin;
+      options.result_hash = toy_hash("x");
+      const Program program =
+          make_program(correction, Eigen::Vector3d(10.0, 20.0, 30.0), test::some_cell(), options);
+      const Reading read = read_rapid(write_rapid(program, toy_hash), "program.mod");
+      EXPECT_EQ(differences(program, read, toy_hash), std::vector<std::string>());
+    }
+  }
+}
+
+TEST(RapidRoundTrip, ACellThatKnowsItsToolAndLinesDoesNotHaveThemRedefined) {
+  Cell cell = test::some_cell();
+  cell.define_tool = cell.define_work = false;
+  cell.tool_name = "tool0";
+  cell.spindle_output.clear();
+  cell.spindle_ready.clear();
+  const Program program = make_program(test::ring(20, 60.0, true), Eigen::Vector3d::Zero(), cell, {});
+  const std::string text = write_rapid(program, toy_hash);
+  EXPECT_EQ(text.find("tooldata"), std::string::npos);
+  EXPECT_EQ(text.find("SetDO"), std::string::npos);
+  EXPECT_EQ(differences(program, read_rapid(text, "p.mod"), toy_hash), std::vector<std::string>());
+}
+
+enum class Caught { kByGrammar, kByComparison, kByHash, kNot };
+
+Caught caught(const Program& meant, const std::string& text) {
+  try {
+    const Reading read = read_rapid(text, "mutated.mod");
+    const auto no_hash = [&](std::string_view) { return read.body_sha256; };
+    if (!differences(meant, read, no_hash).empty()) return Caught::kByComparison;
+    return differences(meant, read, toy_hash).empty() ? Caught::kNot : Caught::kByHash;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kInput) << error.what();
+    return Caught::kByGrammar;
+  }
+}
+
+TEST(RapidRoundTrip, EveryMutationIsCaught) {
+  const Program meant = random_program(2, 60);
+  const std::string text = write_rapid(meant, toy_hash);
+  ASSERT_EQ(caught(meant, text), Caught::kNot);
+  std::mt19937_64 random(3);
+  int count[4] = {0, 0, 0, 0};
+  for (int i = 0; i < 2000; ++i) {
+    std::string mutated = text;
+    const std::size_t at = random() % text.size();
+    if (i % 2 == 0) {
+      mutated.erase(at, 1);
+    } else {
+      char other = mutated[at];
+      while (other == mutated[at]) other = static_cast<char>(' ' + random() % 95);
+      mutated[at] = other;
+    }
+    if (mutated == text) continue;
+    const Caught how = caught(meant, mutated);
+    ++count[static_cast<int>(how)];
+    EXPECT_NE(how, Caught::kNot) << "at " << at << ": " << text.substr(at > 30 ? at - 30 : 0, 60);
+  }
+  std::cout << "caught by grammar " << count[0] << ", by comparison " << count[1] << ", by hash alone "
+            << count[2] << "\n";
+  EXPECT_EQ(count[3], 0);
+}
+
+// What the hash alone catches must be without effect: nothing that moves the robot by more than the
+// tolerance.
+TEST(RapidRoundTrip, ComparisonAloneCatchesEveryDigitThatMatters) {
+  const Program meant = random_program(4, 12);
+  const std::string text = write_rapid(meant, toy_hash);
+  int tried = 0;
+  for (std::size_t at = text.find("robtarget"); (at = text.find("p", at)) != std::string::npos && tried < 12;
+       ++at) {
+    const std::size_t open = text.find(":=[[", at);
+    if (open == std::string::npos) break;
+    const std::size_t point = text.find('.', open);
+    for (std::size_t digit : {point - 1, point + 1, point + 2}) {  // 1, 0.1 and 0.01 mm of x
+      std::string mutated = text;
+      mutated[digit] = mutated[digit] == '9' ? '4' : static_cast<char>(mutated[digit] + 1);
+      const Caught how = caught(meant, mutated);
+      EXPECT_TRUE(how == Caught::kByComparison || how == Caught::kByGrammar);
+    }
+    ++tried;
+    at = text.find('\n', open);
+  }
+  EXPECT_EQ(tried, 12);
+}
+
+}  // namespace
+}  // namespace arris
