@@ -57,7 +57,8 @@ PreparedScan prepare_scan(const Scan& scan, const PrepareOptions& options) {
                                 .next = "scan the part again"});
   std::vector<Eigen::Vector3d> points_mm = local_points_mm(scan.cloud);
   NearestPoints tree(points_mm);
-  PreparedScan prepared{{std::move(points_mm), {}, std::move(tree), {}, {}, {}, 0.0, 0.0, SideKnown::kNo}, {}, ""};
+  PreparedScan prepared{
+      {std::move(points_mm), {}, std::move(tree), {}, {}, {}, 0.0, 0.0, SideKnown::kNo}, {}, ""};
   ScanModel& model = prepared.model;
   LocalPlanes planes = fit_local_planes(model.points_mm, model.tree, kPlaneNeighbours, options.threads);
   prepared.side_decided_by = decide_side(scan, options, model, planes.normals);

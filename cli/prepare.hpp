@@ -21,7 +21,8 @@ struct PrepareOptions {
 struct PreparedScan {
   ScanModel model;
   ContourSet contours;
-  std::string side_decided_by;  ///< "normals in the file", "triangles in the file", "seen_from"; empty: undecided
+  std::string
+      side_decided_by;  ///< "normals in the file", "triangles in the file", "seen_from"; empty: undecided
 };
 
 /// Normals, their side, point spacing, noise and contours of a scan. Throws Error(kInput) below 30 points.

@@ -9,8 +9,8 @@
 namespace arris {
 namespace {
 
-constexpr double kAngleGapSigmaRatio = 0.7;   // scatter of angle-gap edge points across the edge, in spacings
-constexpr double kSharpenedSigmaRatio = 0.1;  // of the edge by support
+constexpr double kSharpenedSigmaRatio = 0.1;  // scatter of the edge by support, in spacings
+constexpr int kSharpeningPasses = 2;
 constexpr double kSampleMm = 2.0;
 
 /// Turns an undecided scan to the side that the start pose chose.
@@ -135,18 +135,17 @@ void judge_coverage(const CadModel& cad, const RegistrationOptions& options, Reg
 
 void deform(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options, Registration& result) {
   const RigidMotion& rigid = result.rigid.scan_from_cad;
+  std::vector<ContourMotion> motions;
+  for (const Curve& curve : cad.contours) motions.push_back(rigid_motion(curve, rigid));
+  result.contours = with_edges(cad, scan, std::move(motions), options);
   if (options.method == RegistrationMethod::kRigid) {
-    std::vector<ContourMotion> motions;
-    for (const Curve& curve : cad.contours) motions.push_back(rigid_motion(curve, rigid));
-    result.contours = with_edges(cad, scan, std::move(motions), options);
     result.field = std::make_shared<RigidField>(rigid);
     return;
   }
-  const EdgeData found{scan.edge_mm, std::max(0.3, kAngleGapSigmaRatio * scan.spacing_mm)};
-  result.contours =
-      with_edges(cad, scan, subdivision_icp(cad, scan, found, rigid, options.subdivision), options);
-  const EdgeData edge = sharpened(cad, scan, result.contours);
-  result.contours = with_edges(cad, scan, subdivision_icp(cad, scan, edge, rigid, options.subdivision), options);
+  for (int pass = 0; pass < kSharpeningPasses; ++pass) {
+    const EdgeData edge = sharpened(cad, scan, result.contours);
+    result.contours = with_edges(cad, scan, subdivision_icp(cad, scan, edge, rigid, options.subdivision), options);
+  }
   result.field = std::make_shared<SubdivisionField>(cad, result.contours, options.band_mm, options.follow_edge);
 }
 

@@ -1,5 +1,7 @@
 #include "registration/scene.hpp"
 
+#include <Eigen/Geometry>
+
 namespace arris {
 
 Eigen::Vector3d CadModel::inward(std::size_t c, double arc_mm) const {

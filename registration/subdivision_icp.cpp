@@ -18,6 +18,7 @@ constexpr double kScaleSigmas = 3.0;        // where annealing stops
 constexpr double kMisfitSigmaMm = 0.15;     // a rigid segment on a bending part: misfit along the normal
 constexpr double kCoveredRatio = 0.4;       // of a segment's arc bins, for its motion to count as data
 constexpr double kBinMm = 5.0;
+constexpr double kFarthestStartMm = 60.0;   // edge points farther from the rigidly placed contour are another edge's
 constexpr std::size_t kChunk = 512;
 
 /// Scan points beside the contour that hold the segments' tilt.
@@ -44,7 +45,7 @@ class FootFit {
     fits_.assign(subdivision_.segments().size(), start);
     sigma_normal_mm_ = std::max(scan.noise_sigma_mm, kMisfitSigmaMm);
     choose_stability_points(rigid.inverse());
-    scale_ = start_scale(rigid.inverse());
+    start_scale_mm_ = start_scale_mm(rigid.inverse());
   }
 
   ContourMotion run() {
@@ -52,29 +53,36 @@ class FootFit {
     for (int k = 0; k < options_.max_iterations; ++k) {
       const double rms = round();
       for (SegmentFit& fit : fits_) fit.iterations = k + 1, fit.stop = "iteration limit";
-      if (scale_ <= 1.0 && std::abs(last_rms - rms) <= options_.stop_change_ratio * rms) {
+      if (settled() && std::abs(last_rms - rms) <= options_.stop_change_ratio * rms) {
         for (SegmentFit& fit : fits_) fit.stop = "converged";
         break;
       }
       last_rms = rms;
-      scale_ = std::max(1.0, scale_ * kAnneal);
+      anneal_ *= kAnneal;
     }
     return {curve_, subdivision_, fits_};
   }
 
  private:
-  /// Robust scale at the start, in final scales: the rigid fit leaves the whole deformation.
-  double start_scale(const RigidMotion& cad_from_scan) const {
+  /// Robust scale at the start: the rigid fit leaves the whole deformation in the residuals.
+  double start_scale_mm(const RigidMotion& cad_from_scan) const {
     std::vector<double> sizes;
     for (const Eigen::Vector3d& e : data_.points_mm) {
-      const EdgePair pair = pair_edge(cad_, cad_from_scan * e, 60.0);
+      const EdgePair pair = pair_edge(cad_, cad_from_scan * e, kFarthestStartMm);
       if (pair.contour == contour_) sizes.push_back(std::hypot(pair.across_mm, pair.normal_mm));
     }
     if (sizes.empty()) return 1.0;
-    const auto ninth = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() * 9 / 10);
-    std::nth_element(sizes.begin(), ninth, sizes.end());
-    const double final_mm = kScaleSigmas * std::min(data_.sigma_across_mm, sigma_normal_mm_);
-    return std::clamp(1.5 * *ninth / final_mm, 1.0, 400.0);
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    return 3.0 * *middle;
+  }
+
+  double across_scale_mm() const {
+    return std::max(kScaleSigmas * data_.sigma_across_mm, anneal_ * start_scale_mm_);
+  }
+  double normal_scale_mm() const { return std::max(kScaleSigmas * sigma_normal_mm_, anneal_ * start_scale_mm_); }
+  bool settled() const {
+    return anneal_ * start_scale_mm_ <= kScaleSigmas * std::min(data_.sigma_across_mm, sigma_normal_mm_);
   }
 
   void choose_stability_points(const RigidMotion& cad_from_scan) {
@@ -153,11 +161,10 @@ class FootFit {
   /// Scan edge points to their feet; the reach shrinks with the robust scale.
   void assign_edges(const std::vector<RigidMotion>& current, std::vector<NormalEquations>& systems,
                     std::vector<std::vector<char>>& seen, double& cost, double& weight) {
-    const double across_scale_mm = kScaleSigmas * data_.sigma_across_mm * std::min(scale_, 50.0);
-    const double normal_scale_mm = kScaleSigmas * sigma_normal_mm_ * scale_;
+    const double across_scale = across_scale_mm(), normal_scale = normal_scale_mm();
     const double across_weight = 1.0 / (data_.sigma_across_mm * data_.sigma_across_mm);
     const double normal_weight = 1.0 / (sigma_normal_mm_ * sigma_normal_mm_);
-    const double reach_mm = 4.0 * std::max(across_scale_mm, scan_.spacing_mm);
+    const double reach_mm = 3.0 * std::max(across_scale, scan_.spacing_mm);
     std::vector<double> segment_cost(fits_.size(), 0.0), segment_weight(fits_.size(), 0.0);
     for (const Eigen::Vector3d& e : data_.points_mm) {
       const int home = nearest_segment(e, current, reach_mm);
@@ -168,8 +175,8 @@ class FootFit {
         const std::size_t z = static_cast<std::size_t>(index);
         const EdgePair pair = pair_edge(cad_, current[z] * e, 2.0 * reach_mm);
         if (pair.contour != contour_) continue;
-        const double robust = geman_mcclure_weight(pair.across_mm * pair.across_mm, across_scale_mm) *
-                              geman_mcclure_weight(pair.normal_mm * pair.normal_mm, normal_scale_mm);
+        const double robust = geman_mcclure_weight(pair.across_mm * pair.across_mm, across_scale) *
+                              geman_mcclure_weight(pair.normal_mm * pair.normal_mm, normal_scale);
         const Eigen::Vector3d x = current[z] * e - pivot(z);
         systems[z].add(x, pair.across, pair.across_mm, robust * across_weight);
         systems[z].add(x, pair.normal, pair.normal_mm, robust * normal_weight);
@@ -209,7 +216,7 @@ class FootFit {
   }
 
   void add_stability(std::size_t z, const RigidMotion& cad_from_scan, NormalEquations& system) const {
-    const double scale_mm = kScaleSigmas * sigma_normal_mm_ * scale_;
+    const double scale_mm = normal_scale_mm();
     const double weight = 1.0 / (sigma_normal_mm_ * sigma_normal_mm_);
     for (const StabilityPoint& sp : stability_[z]) {
       const Eigen::Vector3d x = cad_from_scan * scan_.points_mm[sp.scan_index];
@@ -247,7 +254,7 @@ class FootFit {
   Subdivision subdivision_;
   std::vector<SegmentFit> fits_;
   std::vector<std::vector<StabilityPoint>> stability_;
-  double sigma_normal_mm_ = 0.0, scale_ = 1.0;
+  double sigma_normal_mm_ = 0.0, start_scale_mm_ = 1.0, anneal_ = 1.0;
 };
 
 /// The paper's choices: contour points and all stability points of the surface, frozen partners for the latter.
