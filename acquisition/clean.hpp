@@ -10,8 +10,11 @@ namespace arris {
 
 /// Options of clean(); every field is a recipe key of [scan].
 struct CleanOptions {
-  double outlier_sigmas = 4.0;  ///< mean distance to 8 neighbours beyond mean + this many sigmas is dropped; 0: off
-  double voxel_mm = 0.0;        ///< one point (the one nearest the centroid, never an average) a voxel; 0: off
+  /// A stray's mean distance to its 8 neighbours is beyond the cloud's mean + this many standard deviations,
+  /// and twice what its neighbours have themselves (or six times the cloud's median); rims and sparser
+  /// regions are spared. 0: off
+  double outlier_sigmas = 4.0;
+  double voxel_mm = 0.0;  ///< one point (the one nearest the centroid, never an average) a voxel; 0: off
   int threads = 0;
 };
 
@@ -24,11 +27,13 @@ struct Cleaned {
 };
 
 /// Statistical outliers, then voxel thinning. A voxel mean would pull a curved surface inwards, so a measured
-/// point is kept instead. Throws Error(kInput) when nothing is left. Cost O(N log N); deterministic.
+/// point is kept instead. Throws Error(kInput) for an empty cloud, Error(kRecipe) for negative options. Cost
+/// O(N log N); deterministic.
 [[nodiscard]] Cleaned clean(const PointCloud& cloud, const CleanOptions& options);
 
 /// Points within distance_mm of the polyline points given (same local frame as cloud.points_mm); kept order.
-[[nodiscard]] PointCloud crop_to_band(const PointCloud& cloud, const std::vector<Eigen::Vector3d>& contour_local_mm,
+[[nodiscard]] PointCloud crop_to_band(const PointCloud& cloud,
+                                      const std::vector<Eigen::Vector3d>& contour_local_mm,
                                       double distance_mm);
 
 }  // namespace arris
