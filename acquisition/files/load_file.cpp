@@ -137,7 +137,8 @@ Kind agreed_kind(const Source& source) {
   if (content == Kind::kUnknown && named != Kind::kText) return named;
   std::string found = std::string(name_of(content)) + " content";
   if (content == Kind::kUnknown) found = "binary content of no known kind";
-  if (content == Kind::kText) found = "text that begins with " + quoted(source.bytes.substr(0, 24), 16);
+  if (content == Kind::kText)
+    found = "text that begins with " + quoted(first_statement(source.bytes.substr(0, kHeadBytes)), 16);
   throw bad_file(source, "the file is not what its name says", "", found,
                  std::string(name_of(named)) + " content, as the ending " + ending + " says",
                  "rename the file by its content, or export it again");

@@ -1,7 +1,8 @@
 #include "acquisition/files/pcd_header.hpp"
 
 #include <charconv>
-#include <limits>
+
+#include "acquisition/files/lzf.hpp"
 
 namespace arris::files {
 namespace {
@@ -112,12 +113,15 @@ class PcdHeaderReader {
   }
 
   void lay_out() {
+    // Packed data grow at most kLzfGrowth times; beyond that no field can be real, and no sum below
+    // overflows.
+    const std::size_t most = saturated_product(source_.bytes.size(), kLzfGrowth);
     for (PcdField& field : header_.fields) {
       const std::size_t bytes = saturated_product(field.size, field.count);
-      if (bytes > source_.bytes.size() || field.count > source_.bytes.size())
+      if (bytes > most || field.count > most)
         throw bad_file(source_, "a PCD field is larger than the file", "field " + printable(field.name),
-                       std::to_string(bytes) + " bytes", "at most " + std::to_string(source_.bytes.size()),
-                       "export the file again");
+                       std::to_string(field.count) + " values of " + std::to_string(field.size) + " bytes",
+                       "a row that fits into the file", "export the file again");
       field.offset = header_.row_bytes;
       field.column = header_.row_columns;
       header_.row_bytes += bytes;
