@@ -42,18 +42,24 @@ ColourMap::ColourMap(double tolerance_mm, double limit_mm)
     steps_.push_back({edge(k), edge(k + 1), kAbove[static_cast<std::size_t>(k)]});
 }
 
+int ColourMap::step_of(double deviation_mm) const {
+  const int count = static_cast<int>(steps_.size());
+  const auto step = [&](int i) -> const ColourStep& { return steps_[static_cast<std::size_t>(i)]; };
+  if (deviation_mm >= 0.0) {
+    int i = count / 2;
+    while (i < count && deviation_mm > step(i).to_mm) ++i;
+    return i;
+  }
+  int i = count / 2 - 1;
+  while (i >= 0 && deviation_mm < step(i).from_mm) --i;
+  return i;
+}
+
 Rgb ColourMap::colour(double deviation_mm) const {
   if (!std::isfinite(deviation_mm)) return no_data();
-  if (deviation_mm > limit_mm()) return over_scale();
-  if (deviation_mm < -limit_mm()) return under_scale();
-  // A value on an edge belongs to the step nearer to zero: the zone is closed.
-  if (deviation_mm >= 0.0) {
-    for (const ColourStep& step : steps_)
-      if (step.to_mm > 0.0 && deviation_mm <= step.to_mm) return step.colour;
-  }
-  for (auto step = steps_.rbegin(); step != steps_.rend(); ++step)
-    if (step->from_mm < 0.0 && deviation_mm >= step->from_mm) return step->colour;
-  return no_data();
+  const int i = step_of(deviation_mm);
+  if (i < 0) return under_scale();
+  return i < static_cast<int>(steps_.size()) ? steps_[static_cast<std::size_t>(i)].colour : over_scale();
 }
 
 Rgb ColourMap::over_scale() {

@@ -29,7 +29,10 @@ class ColourMap {
   /// tolerance_mm / 2.
   ColourMap(double tolerance_mm, double limit_mm);
 
-  [[nodiscard]] Rgb colour(double deviation_mm) const;                           ///< NaN: no_data()
+  [[nodiscard]] Rgb colour(double deviation_mm) const;  ///< NaN: no_data()
+  /// Index into steps(); -1 under scale, steps().size() over scale. A value on an edge belongs to the step
+  /// nearer to zero, so that the zone is closed. Not for NaN.
+  [[nodiscard]] int step_of(double deviation_mm) const;
   [[nodiscard]] const std::vector<ColourStep>& steps() const { return steps_; }  ///< ascending, without gaps
   [[nodiscard]] double limit_mm() const { return steps_.back().to_mm; }
   [[nodiscard]] double half_zone_mm() const { return half_zone_mm_; }

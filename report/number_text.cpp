@@ -22,9 +22,10 @@ std::string people_text(double value, int digits) {
 }
 
 std::string signed_text(double value, int digits) {
-  const std::string text = people_text(value, digits);
-  const bool is_plain = text.find_first_of("123456789") == std::string::npos || text.front() == '-';
-  return is_plain ? text : "+" + text;
+  std::string text = people_text(value, digits);
+  if (text.find_first_of("123456789") == std::string::npos) return text;
+  if (text.front() == '-') return text.replace(0, 1, "\u2212");
+  return text.insert(0, 1, '+');
 }
 
 double rounded(double value) {

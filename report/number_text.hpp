@@ -8,10 +8,10 @@ namespace arris::report {
 /// "nan".
 [[nodiscard]] std::string fixed_text(double value, int digits);
 
-/// The same for people: a real minus sign is left to the caller, and what is not finite reads "no data".
+/// The same for people: what is not finite reads "no data".
 [[nodiscard]] std::string people_text(double value, int digits);
 
-/// With a sign for values that do not round to zero: "+0.12", "-0.12", "0.00".
+/// With a sign for values that do not round to zero: "+0.12", "0.00", and the minus of typesetting (UTF-8).
 [[nodiscard]] std::string signed_text(double value, int digits);
 
 /// Rounded to 1e-6, the precision of every number written; never minus zero. Not finite stays as it is.

@@ -91,7 +91,7 @@ std::vector<WorstPoint> worst_points(const RunRecord& record, int count_each) {
     for (const std::size_t i :
          spaced_extremes(record.cloud.points_mm, record.deviation_mm, count_each, spacing_mm, positive)) {
       WorstPoint point;
-      point.id.push_back(positive ? '+' : '-');
+      point.id.push_back(positive ? 'H' : 'L');
       point.id.append(std::to_string(++number));
       point.index = i;
       point.deviation_mm = static_cast<double>(record.deviation_mm[i]);

@@ -11,7 +11,7 @@ namespace arris::report {
 
 /// One flag: the same id in picture, table and data.
 struct WorstPoint {
-  std::string id;         ///< "+1" the highest, "-1" the lowest, ...
+  std::string id;         ///< "H1" the highest, "L1" the lowest, ...
   std::size_t index = 0;  ///< point of the cloud
   double deviation_mm = 0.0;
   Eigen::Vector3d p_scan_mm = Eigen::Vector3d::Zero();  ///< scan frame, the file's coordinates

@@ -142,12 +142,12 @@ TEST(WorstPoints, NominalIsTheFootOnTheCad) {
   record.deviation_mm = {0.75F, -0.125F};
   const auto points = worst_points(record, 5);
   ASSERT_EQ(points.size(), 2U);
-  EXPECT_EQ(points[0].id, "+1");
+  EXPECT_EQ(points[0].id, "H1");
   EXPECT_FALSE(points[0].in_tolerance);
   EXPECT_TRUE(points[0].p_scan_mm.isApprox(Eigen::Vector3d(1020.0, 30.0, 5.75), 1e-9));
   ASSERT_TRUE(points[0].has_nominal);
   EXPECT_NEAR((points[0].nominal_cad_mm - Eigen::Vector3d(20, 30, 0)).norm(), 0.0, 1e-9);
-  EXPECT_EQ(points[1].id, "-1");
+  EXPECT_EQ(points[1].id, "L1");
   EXPECT_TRUE(points[1].in_tolerance);
   record.deviation_mm = {0.9F, -0.125F};  // not the distance to this CAD: no nominal is invented
   EXPECT_FALSE(worst_points(record, 5)[0].has_nominal);
