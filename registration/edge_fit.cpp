@@ -13,7 +13,7 @@ constexpr double kBalance = 0.541;      // log(1 + exp(0.541)) = 1: see fit_edge
 constexpr double kStartTauMm = 2.0;
 constexpr double kTauShrink = 0.6;
 constexpr double kTauFloorMm = 0.03;
-constexpr double kStrayShare = 2e-3;    // of points beyond the edge that are no edge at all, once tau is small
+constexpr double kStrayShare = 0.02;    // of the density: points beyond the edge that are no edge at all
 constexpr double kGateSigmas = 4.0;     // height residual of a point that takes part in the edge
 constexpr double kPointsPerBin = 8.0;
 constexpr int kRounds = 30;
@@ -242,13 +242,12 @@ class EdgeFitter {
                      Eigen::MatrixXd& curvature) {
     curvature = prior;
     Eigen::VectorXd gradient = prior * fit_.across;
-    const double stray = tau < 0.5 * kStartTauMm ? kStrayShare : 0.0;
     for (const StripPoint* p : active) {
       const double g = p->across_mm - p->row.dot(fit_.across);
       if (g > strip_mm_) continue;
       const double x = g / tau - kBalance;
       const double inside = sigmoid(x);
-      const double trusted = inside / (inside + stray);
+      const double trusted = inside / (inside + kStrayShare);
       const double outward = p->curve_weight * trusted * (1.0 - inside) / tau;  // the point pushes the edge outward
       const double inward = g > 0.0 ? p->curve_weight / strip_mm_ : 0.0;
       const double bend = p->curve_weight * trusted * bounded_curvature(x) / (tau * tau);

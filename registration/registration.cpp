@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kSharpenedSigmaRatio = 0.1;  // scatter of the edge by support, in spacings
 constexpr int kSharpeningPasses = 2;
+constexpr double kRigidStartLooseness = 8.0;
 constexpr double kSampleMm = 2.0;
 
 /// Turns an undecided scan to the side that the start pose chose.
@@ -31,13 +32,21 @@ void along(const Curve& curve, const Body& body) {
 }
 
 std::vector<ContourResult> with_edges(const CadModel& cad, const ScanModel& scan, std::vector<ContourMotion> motions,
-                                      const RegistrationOptions& options) {
+                                      const EdgeFitOptions& options) {
   std::vector<ContourResult> results;
   for (std::size_t c = 0; c < motions.size(); ++c) {
-    EdgeFit edge = fit_edge(cad, c, scan, motions[c], options.edge);
+    EdgeFit edge = fit_edge(cad, c, scan, motions[c], options);
     results.push_back({std::move(motions[c]), std::move(edge)});
   }
   return results;
+}
+
+/// Looser splines: relative to the rigid motion they carry the whole deformation.
+EdgeFitOptions for_rigid_start(EdgeFitOptions options) {
+  options.bend_across_per_mm *= kRigidStartLooseness;
+  options.bend_normal_per_mm *= kRigidStartLooseness;
+  options.tilt_change_rad *= kRigidStartLooseness;
+  return options;
 }
 
 /// The found edge, sampled where it was seen.
@@ -137,14 +146,14 @@ void deform(const CadModel& cad, const ScanModel& scan, const RegistrationOption
   const RigidMotion& rigid = result.rigid.scan_from_cad;
   std::vector<ContourMotion> motions;
   for (const Curve& curve : cad.contours) motions.push_back(rigid_motion(curve, rigid));
-  result.contours = with_edges(cad, scan, std::move(motions), options);
+  result.contours = with_edges(cad, scan, std::move(motions), for_rigid_start(options.edge));
   if (options.method == RegistrationMethod::kRigid) {
     result.field = std::make_shared<RigidField>(rigid);
     return;
   }
   for (int pass = 0; pass < kSharpeningPasses; ++pass) {
     const EdgeData edge = sharpened(cad, scan, result.contours);
-    result.contours = with_edges(cad, scan, subdivision_icp(cad, scan, edge, rigid, options.subdivision), options);
+    result.contours = with_edges(cad, scan, subdivision_icp(cad, scan, edge, rigid, options.subdivision), options.edge);
   }
   result.field = std::make_shared<SubdivisionField>(cad, result.contours, options.band_mm, options.follow_edge);
 }
