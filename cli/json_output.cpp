@@ -42,7 +42,7 @@ std::string contours_json(const std::string& file, const ContourSet& contours) {
   Json found = Json::array(), dropped = Json::array();
   for (const FoundContour& contour : contours.found) found.push_back(contour_json(contour));
   for (const FoundContour& contour : contours.dropped) dropped.push_back(contour_json(contour));
-  return text_of({{"file", file}, {"contours", found}, {"dropped", dropped}});
+  return text_of({{"file", file}, {"contours", found}, {"dropped", dropped}, {"notes", contours.notes}});
 }
 
 }  // namespace arris

@@ -42,6 +42,7 @@ bool contains(const std::vector<std::string>& words, const std::string& word) {
 
 std::string range_text(const Key& key) {
   const bool low = std::isfinite(key.min), high = std::isfinite(key.max);
+  if (low && high && key.min == key.max) return fmt::format("{}", key.min);
   if (low && high) return fmt::format("{} to {}", key.min, key.max);
   if (low) return fmt::format("{} or more", key.min);
   if (high) return fmt::format("{} or less", key.max);

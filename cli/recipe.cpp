@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cli/recipe_options.hpp"
 #include "cli/text_file.hpp"
 
 namespace arris {
@@ -19,6 +20,13 @@ void check_together(const std::filesystem::path& file, const Recipe& recipe,
          "remove [toolpath.from_contour] or toolpath.file"});
   if (recipe.scan.initial.given && recipe.scan.initial.scan_from_cad.empty())
     add({"scan.initial has no pose", where("scan.initial"), {}, "scan_from_cad, 16, 12 or 7 numbers", {}});
+  else if (recipe.scan.initial.given) {
+    try {
+      (void)motion_from_numbers("scan.initial.scan_from_cad", recipe.scan.initial.scan_from_cad);
+    } catch (const Error& error) {
+      add({error.what(), where("scan.initial"), {}, {}, {}});
+    }
+  }
   for (const int id : recipe.contour.accept)
     if (std::find(recipe.contour.reject.begin(), recipe.contour.reject.end(), id) !=
         recipe.contour.reject.end())

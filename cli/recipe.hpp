@@ -41,8 +41,8 @@ struct Recipe {
     std::string validation = "auto";
     double sharp_edge_deg = 30.0;
     double angle_gap_deg = 90.0;
-    double radius_spacings_ratio = 2.5;
-    double link_spacings_ratio = 3.5;
+    double disc_spacings_ratio = 2.0;
+    double outsized_edge_ratio = 5.0;
     double min_length_mm = 0.0;
   };
   struct FromContour {
@@ -68,15 +68,19 @@ struct Recipe {
     double segment_length_max_mm = 120.0;
     double band_mm = 60.0;
     double overlap_ratio = 0.3;
+    std::string match = "foot";
     std::string stability_points = "local";
-    double stability_distance_mm = 25.0;
-    int max_iterations = 50;
-    double stop_change_ratio = 1e-4;
+    int stability_count = 60;
+    double stability_distance_mm = 30.0;
+    int max_iterations = 30;
+    double stop_change_ratio = 1e-3;
     std::string blend = "sin2";
     std::string refine = "none";
   };
   struct Registration {
     std::string method = "subdivision";
+    double min_seen_ratio = 0.6;
+    double max_unseen_mm = 150.0;
     Subdivision subdivision;
   };
   struct Tolerance {

@@ -1,12 +1,9 @@
 #include "cli/text_file.hpp"
 
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 
+#include "acquisition/files/atomic_file.hpp"
 #include "acquisition/types/error.hpp"
 
 namespace arris {
@@ -35,25 +32,11 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
 
 void write_new_text_file(const std::filesystem::path& file, const std::string& text,
                          const std::string& kind) {
-  const auto refuse = [&](const std::string& what, const std::string& found, const std::string& next) {
-    throw Error(Fault::kInput, {what, file.string(), found, {}, next});
-  };
   if (std::filesystem::exists(std::filesystem::symlink_status(file)))
-    refuse("the " + kind + " exists already", {}, "choose another name, or remove it");
-  const std::filesystem::path partial = file.string() + ".partial-" + std::to_string(::getpid());
-  std::ofstream stream(partial, std::ios::binary);
-  stream << text;
-  stream.close();
-  const int reason = errno;
-  std::error_code error;
-  if (stream) {
-    std::filesystem::rename(partial, file, error);
-    if (!error) return;
-  }
-  std::error_code ignored;
-  std::filesystem::remove(partial, ignored);
-  refuse("the " + kind + " cannot be written", error ? error.message() : std::strerror(reason),
-         "check the folder, its permissions and the space on the disk");
+    throw Error(
+        Fault::kInput,
+        {"the " + kind + " exists already", file.string(), {}, {}, "choose another name, or remove it"});
+  write_file(file, text);
 }
 
 }  // namespace arris

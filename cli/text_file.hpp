@@ -11,8 +11,8 @@ namespace arris {
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& file, const std::string& kind,
                                          std::uintmax_t max_bytes = std::uintmax_t{16} << 20);
 
-/// Writes a text file whole or not at all: under a temporary name first, then renamed.
-///   throws  Error(kInput): it exists already, the folder is missing or cannot be written, the disk is full
+/// Writes a text file whole or not at all; refuses to replace one.
+///   throws  Error(kInput): it exists already; as AtomicFile
 void write_new_text_file(const std::filesystem::path& file, const std::string& text, const std::string& kind);
 
 }  // namespace arris
