@@ -18,7 +18,8 @@ struct Neighbour {
 /// N). FLANN's single kd-tree index inside, in double; ties are broken by the lower index.
 class NearestPoints {
  public:
-  /// Copies the points; an empty set is allowed and answers every query with nothing.
+  /// Copies the points; an empty set is allowed and answers every query with nothing. Throws Error(kBug) for
+  /// a point that is not finite; a query that is not finite finds nothing.
   explicit NearestPoints(std::span<const Eigen::Vector3d> points_mm);
   ~NearestPoints();
   NearestPoints(NearestPoints&&) noexcept;

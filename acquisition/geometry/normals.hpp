@@ -16,7 +16,10 @@ struct LocalPlanes {
   double spacing_median_mm = 0.0;
 };
 
-/// PCA normals over the k nearest points (k >= 3). Cost O(N k log N); same bytes for any thread count.
+/// PCA normals over each point and its k nearest others (k >= 3; `tree` holds the same points). Residuals are
+/// scaled by the share of its own noise that a point's plane absorbs, so that noise_sigma_mm does not depend
+/// on k; a surface of radius R adds about r_k^2 / (4 R) to it. Clouds of fewer than 3 points get UnitZ. Cost
+/// O(N k log N); same bytes for any thread count.
 [[nodiscard]] LocalPlanes fit_local_planes(std::span<const Eigen::Vector3d> points_mm,
                                            const NearestPoints& tree, int k, int threads);
 
