@@ -34,8 +34,9 @@ class Curve {
   [[nodiscard]] double arc_between_mm(double from_mm, double to_mm) const;
   [[nodiscard]] Eigen::Vector3d point_mm(double arc_mm) const;
   [[nodiscard]] Eigen::Vector3d tangent(double arc_mm) const;  ///< unit chord direction
-  [[nodiscard]] Eigen::Vector3d normal(
-      double arc_mm) const;  ///< unit; interpolated; zero when the contour has none
+  /// Unit; interpolated between the points; zero when the contour has none.
+  [[nodiscard]] Eigen::Vector3d normal(double arc_mm) const;
+  /// Ties: the lower segment. Throws Error(kBug) for a query that is not finite.
   [[nodiscard]] CurveFoot nearest(const Eigen::Vector3d& query_mm) const;
 
  private:
@@ -60,7 +61,8 @@ class Curve {
 [[nodiscard]] Contour resample(const Contour& contour, double step_mm);
 
 /// Radius of curvature at each point: circle fitted to the points within +-window_mm of arc (not three
-/// points, whose noise a short chord magnifies); straight runs answer 1e9. mm.
+/// points, whose noise a short chord magnifies); straight runs answer 1e9. A side with
+/// fewer than two points in the window is represented by points of its chord. mm.
 [[nodiscard]] std::vector<double> bend_radius_mm(const Contour& contour, double window_mm);
 
 }  // namespace arris
