@@ -23,7 +23,7 @@ using Chosen = std::function<int()>;
 
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& about,
                       const std::string& example) {
-  CLI::App* command = app.add_subcommand(name, about);
+  CLI::App* command = app.add_subcommand(name, about)->group("Commands");
   command->footer("Example:\n  " + example + "\n\nEvery command takes --threads N, --json and --help.");
   return command;
 }
@@ -37,19 +37,19 @@ void add_run(CLI::App& app, const Common& common, Chosen& chosen, bool inspect) 
                             "arris inspect bracket.toml --scan part7.ply --out part7")
               : add_command(app, "run", "The main job: scan in; corrected path, robot program and report out",
                             "arris run bracket.toml --scan part7.ply --cell cell.toml");
-  command->add_option("recipe", args->recipe, "recipe of the part number (arris recipe print explains it)")
+  command->add_option("RECIPE", args->recipe, "recipe of the part number (arris recipe print explains it)")
       ->required()
-      ->type_name("RECIPE");
+      ->option_text(" ");
   command->add_option("--scan", args->scan, "scan of the part (ply, stl, pcd, off, text)")
       ->required()
-      ->type_name("FILE");
+      ->option_text("FILE (required)");
   command->add_option("--out", args->out, "folder of the results; <scan>.arris unless given")
-      ->type_name("DIR");
+      ->option_text("DIR");
   command->add_option("--contours", args->contours, "the operator's choice, from arris contours --accept")
-      ->type_name("FILE");
+      ->option_text("FILE");
   if (!inspect)
     command->add_option("--cell", args->cell, "station file; replaces the one the recipe names")
-        ->type_name("FILE");
+        ->option_text("FILE");
   command->add_flag("--force", args->force, "replace the folder of the results when it exists");
   command->callback([args, &common, &chosen] {
     args->json = common.json;
@@ -63,18 +63,18 @@ void add_contours(CLI::App& app, const Common& common, Chosen& chosen) {
   CLI::App* command =
       add_command(app, "contours", "List and draw the contours of a mesh or scan; choose among them",
                   "arris contours part7.ply --png loops.png --accept 1,4 --out contours.json");
-  command->add_option("file", args->file, "mesh of the drawing, or a scan")->required()->type_name("FILE");
+  command->add_option("FILE", args->file, "mesh of the drawing, or a scan")->required()->option_text(" ");
   command->add_option("--recipe", args->recipe, "recipe whose units and [contour] options are used")
-      ->type_name("FILE");
+      ->option_text("FILE");
   command->add_option("--units", args->units, "unit of the file when there is no recipe: mm, cm, m, inch")
       ->check(CLI::IsMember({"mm", "cm", "m", "inch"}))
-      ->type_name("UNIT");
+      ->option_text("UNIT");
   command->add_option("--accept", args->accept, "ids to accept; all others are rejected")
       ->delimiter(',')
-      ->type_name("IDS");
+      ->option_text("IDS");
   command->add_option("--out", args->out, "write the choice here, for arris run --contours")
-      ->type_name("FILE");
-  command->add_option("--png", args->png, "draw the contours")->type_name("FILE");
+      ->option_text("FILE");
+  command->add_option("--png", args->png, "draw the contours")->option_text("FILE");
   command->callback([args, &common, &chosen] {
     args->json = common.json;
     args->threads = common.threads;
@@ -85,7 +85,7 @@ void add_contours(CLI::App& app, const Common& common, Chosen& chosen) {
 void add_info(CLI::App& app, const Common& common, Chosen& chosen) {
   const auto args = std::make_shared<InfoArgs>();
   CLI::App* command = add_command(app, "info", "What a scan or mesh file holds", "arris info part7.ply");
-  command->add_option("file", args->file, "scan or mesh")->required()->type_name("FILE");
+  command->add_option("FILE", args->file, "scan or mesh")->required()->option_text(" ");
   command->callback([args, &common, &chosen] {
     args->json = common.json;
     chosen = [args] { return run_info(*args); };
@@ -97,7 +97,7 @@ void add_recipe_check(CLI::App& recipe, const Common& common, Chosen& chosen) {
   CLI::App* command =
       add_command(recipe, "check", "Say all that is wrong in a recipe, and in the cell it names",
                   "arris recipe check bracket.toml");
-  command->add_option("file", args->file, "recipe, or cell with --cell")->required()->type_name("FILE");
+  command->add_option("FILE", args->file, "recipe, or cell with --cell")->required()->option_text(" ");
   command->add_flag("--cell", args->is_cell, "the file is a cell");
   command->callback([args, &common, &chosen] {
     args->json = common.json;
@@ -110,8 +110,8 @@ void add_recipe_print(CLI::App& recipe, Chosen& chosen) {
   CLI::App* command =
       add_command(recipe, "print", "Print a recipe with every key, its value and what it means",
                   "arris recipe print bracket.toml > full.toml");
-  command->add_option("file", args->file, "recipe, or cell with --cell; the defaults without it")
-      ->type_name("FILE");
+  command->add_option("FILE", args->file, "recipe, or cell with --cell; the defaults without it")
+      ->option_text(" ");
   command->add_flag("--cell", args->is_cell, "print a cell");
   command->callback([args, &chosen] { chosen = [args] { return run_recipe_print(*args); }; });
 }
@@ -121,15 +121,15 @@ void add_recipe_new(CLI::App& recipe, Chosen& chosen) {
   CLI::App* command =
       add_command(recipe, "new", "Write a first recipe for a drawing",
                   "arris recipe new --cad bracket.stl --path deburr.csv --part A-1042 > bracket.toml");
-  command->add_option("--cad", args->cad, "mesh of the drawing")->required()->type_name("FILE");
-  command->add_option("--path", args->path, "nominal tool path (csv)")->type_name("FILE");
+  command->add_option("--cad", args->cad, "mesh of the drawing")->required()->option_text("FILE (required)");
+  command->add_option("--path", args->path, "nominal tool path (csv)")->option_text("FILE");
   command->add_option("--part", args->part, "part number; the name of the mesh unless given")
-      ->type_name("NUMBER");
+      ->option_text("NUMBER");
   command->add_option("--units", args->units, "unit of the mesh and the scans: mm, cm, m, inch")
       ->check(CLI::IsMember({"mm", "cm", "m", "inch"}))
-      ->type_name("UNIT");
+      ->option_text("UNIT");
   command->add_option("--out", args->out, "write the recipe here instead of to the screen")
-      ->type_name("FILE");
+      ->option_text("FILE");
   command->callback([args, &chosen] { chosen = [args] { return run_recipe_new(*args); }; });
 }
 
@@ -146,13 +146,13 @@ void add_demo(CLI::App& app, const Common& common, Chosen& chosen) {
   const auto args = std::make_shared<DemoArgs>();
   CLI::App* command =
       add_command(app, "demo", "The main job on a built-in part", "arris demo --out /tmp/demo");
-  command->add_option("--out", args->out, "folder of the demo; one that it made before is replaced")
-      ->type_name("DIR")
-      ->capture_default_str();
-  command->add_option("--part", args->part, "built-in part: porthole, nosecone, sheet")
+  command
+      ->add_option("--out", args->out,
+                   "folder of the demo, arris-demo unless given; one that it made before is replaced")
+      ->option_text("DIR");
+  command->add_option("--part", args->part, "built-in part: porthole (unless given), nosecone, sheet")
       ->check(CLI::IsMember({"porthole", "nosecone", "sheet"}))
-      ->type_name("NAME")
-      ->capture_default_str();
+      ->option_text("NAME");
   command->callback([args, &common, &chosen] {
     args->json = common.json;
     args->threads = common.threads;
@@ -220,9 +220,10 @@ int run_command_line(int argc, const char* const* argv) {
   app.add_flag("--json", common.json, "results as JSON on stdout");
   app.add_option("--threads", common.threads, "threads to use; 0: one a core")
       ->check(CLI::Range(0, 1024))
-      ->type_name("N");
+      ->option_text("N");
   app.fallthrough();
   app.require_subcommand(1);
+  app.get_formatter()->label("SUBCOMMAND", "COMMAND");
   app.footer(
       "Example:\n  arris run bracket.toml --scan part7.ply --out part7\n\narris COMMAND --help says more.");
   add_run(app, common, chosen, false);
@@ -234,7 +235,7 @@ int run_command_line(int argc, const char* const* argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    console::print(innermost(app).help("", CLI::AppFormatMode::Normal));
+    console::print(app.help());
     return 0;
   } catch (const CLI::CallForVersion&) {
     console::print(version());
