@@ -82,11 +82,11 @@ p { margin: 6px 0 10px; }
 .soft { color: var(--soft); }
 .mono { font-family: "DejaVu Sans Mono", Consolas, Menlo, monospace; font-size: 12.5px; overflow-wrap: anywhere; }
 .top { display: flex; justify-content: space-between; gap: 20px; align-items: baseline; }
-.verdicts { display: grid; grid-template-columns: 1fr 1fr; gap: 14px; margin: 14px 0; }
+.verdicts { display: grid; grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 14px; margin: 14px 0; }
 .verdict { border-radius: 10px; padding: 16px 18px; color: #fff; display: flex; gap: 16px; align-items: flex-start; }
 .verdict svg { flex: none; width: 54px; height: 54px; }
 .verdict .what { font-size: 15px; opacity: 0.92; }
-.verdict .word { font-size: 30px; font-weight: 700; line-height: 1.1; letter-spacing: 0.01em; }
+.verdict .word { font-size: clamp(22px, 3.1vw, 30px); overflow-wrap: anywhere; font-weight: 700; line-height: 1.1; letter-spacing: 0.01em; }
 .verdict .why { font-size: 15px; margin-top: 6px; overflow-wrap: anywhere; }
 .good { background: var(--good); } .bad { background: var(--bad); } .unsure { background: var(--unsure); }
 .none { background: var(--none); }
@@ -113,8 +113,9 @@ table { border-collapse: collapse; width: 100%; margin: 6px 0 12px; font-size: 1
 th, td { padding: 5px 9px; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
 th { background: var(--pale); font-weight: 600; }
 tr { break-inside: avoid; }
+.terms th { white-space: nowrap; }
 td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-td.hash { width: 56%; }
+td.hash { width: 59%; font-size: 10.8px; padding-top: 9px; }
 .out { color: var(--bad); font-weight: 600; }
 .scroll { overflow-x: auto; }
 .matrix td { font-family: "DejaVu Sans Mono", Consolas, Menlo, monospace; font-size: 13px; text-align: right; }
@@ -125,7 +126,7 @@ figure img, figure svg { display: block; width: 100%; height: auto; }
 figcaption { color: var(--soft); font-size: 14.5px; margin-top: 4px; }
 .chart text { font-family: inherit; font-size: 13.5px; fill: var(--ink); }
 .chart .soft { fill: var(--soft); }
-.chart .readout { font-size: 13.5px; font-weight: 600; }
+.chart .readout { font-weight: 600; paint-order: stroke; stroke: #fff; stroke-width: 5px; }
 .footer { margin-top: 40px; border-top: 1px solid var(--line); padding-top: 8px; font-size: 13px; color: var(--soft);
   overflow-wrap: anywhere; }
 @media (max-width: 640px) { .verdicts, .results, .facts { grid-template-columns: 1fr; } }
@@ -133,7 +134,8 @@ figcaption { color: var(--soft); font-size: 14.5px; margin-top: 4px; }
 @media print {
   body { max-width: none; padding: 0; font-size: 10.5pt; }
   * { -webkit-print-color-adjust: exact; print-color-adjust: exact; }
-  h2 { margin-top: 20px; } table { font-size: 9.5pt; }
+  h2 { margin-top: 18px; } table { font-size: 9pt; break-inside: avoid; } th, td { padding: 2.5px 7px; }
+  .next { font-size: 12pt; } .reasons { font-size: 11pt; } td.hash { font-size: 7pt; padding-top: 4px; }
   .scroll { overflow: visible; }
   figure img { max-height: 150mm; object-fit: contain; object-position: left; }
 }

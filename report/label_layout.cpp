@@ -37,21 +37,23 @@ bool Box::holds(const Eigen::Vector2d& p) const {
 std::vector<Box> place_labels(std::span<const Eigen::Vector2d> anchors,
                               std::span<const Eigen::Vector2d> sizes, const Box& bounds,
                               std::vector<Box> obstacles) {
+  constexpr int kAngles = 32, kRings = 30;
   constexpr double kMarker = 9.0;  // around each anchor: the dot stays visible
   for (const Eigen::Vector2d& p : anchors)
     obstacles.push_back({p.x() - kMarker, p.y() - kMarker, 2.0 * kMarker, 2.0 * kMarker});
   std::vector<Box> placed(anchors.size()), labels;
   for (std::size_t i = 0; i < anchors.size(); ++i) {
     const double width = sizes[i].x(), height = sizes[i].y();
-    for (int step = 0; step < 16 * 20 && placed[i].width == 0.0; ++step) {
-      const double reach = 22.0 + 14.0 * (step / 16);
-      const double angle = 3.14159265358979323846 * (2.0 * (step % 16) / 16.0 - 0.25);
+    for (int step = 0; step < kAngles * kRings && placed[i].width == 0.0; ++step) {
+      const double reach = 22.0 + 10.0 * (step / kAngles);
+      const double angle = 3.14159265358979323846 * (2.0 * (step % kAngles) / kAngles - 0.25);
       const double cos = std::cos(angle), sin = std::sin(angle);
       const Box box{anchors[i].x() + cos * (reach + 0.5 * width) - 0.5 * width,
                     anchors[i].y() + sin * (reach + 0.5 * height) - 0.5 * height, width, height};
       if (!inside(box, bounds) || !is_free(box, obstacles)) continue;
       const Eigen::Vector2d middle(box.x + 0.5 * width, box.y + 0.5 * height);
-      if (step < 16 * 14 && crosses(anchors[i], middle, labels)) continue;  // rather a crossing than no label
+      if (step < kAngles * (kRings - 8) && crosses(anchors[i], middle, labels))
+        continue;  // rather a crossing than no label
       placed[i] = box;
       obstacles.push_back({box.x - 4.0, box.y - 4.0, width + 8.0, height + 8.0});
       labels.push_back(box);

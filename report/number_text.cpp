@@ -21,11 +21,15 @@ std::string people_text(double value, int digits) {
   return std::isfinite(value) ? fixed_text(value, digits) : "no data";
 }
 
-std::string signed_text(double value, int digits) {
+std::string minus_text(double value, int digits) {
   std::string text = people_text(value, digits);
-  if (text.find_first_of("123456789") == std::string::npos) return text;
-  if (text.front() == '-') return text.replace(0, 1, "\u2212");
-  return text.insert(0, 1, '+');
+  return text.front() == '-' ? text.replace(0, 1, "\u2212") : text;
+}
+
+std::string signed_text(double value, int digits) {
+  std::string text = minus_text(value, digits);
+  const bool is_plain = text.find_first_of("123456789") == std::string::npos || value < 0.0;
+  return is_plain ? text : text.insert(0, 1, '+');
 }
 
 double rounded(double value) {

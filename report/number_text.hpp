@@ -11,6 +11,9 @@ namespace arris::report {
 /// The same for people: what is not finite reads "no data".
 [[nodiscard]] std::string people_text(double value, int digits);
 
+/// With the minus of typesetting (UTF-8) and no plus.
+[[nodiscard]] std::string minus_text(double value, int digits);
+
 /// With a sign for values that do not round to zero: "+0.12", "0.00", and the minus of typesetting (UTF-8).
 [[nodiscard]] std::string signed_text(double value, int digits);
 

@@ -15,6 +15,7 @@ namespace {
 constexpr double kBarWidth = 224.0;
 
 const LegendItem kFoundEdge{"edge found in the scan", {{0, 0, 0}, 3.0, {}, 1.0}, std::nullopt, false};
+const LegendItem kDroppedLoop{"loop not used", {{60, 60, 60}, 2.0, {9.0, 6.0}, 1.0}, std::nullopt, false};
 const LegendItem kToolPath{"corrected path", {{255, 255, 255}, 3.0, {}, 1.0}, Rgb{0, 0, 0}, false};
 const LegendItem kWorst{
     "H highest, L lowest points, mm", {{255, 255, 255}, 2.0, {}, 1.0}, std::nullopt, true};
@@ -49,6 +50,8 @@ std::vector<Eigen::Vector2d> on_page(const RunRecord& record, const std::vector<
 }
 
 void draw_edges_and_path(Canvas& canvas, const RunRecord& record, const View& view) {
+  for (const Contour& contour : record.dropped_contours)
+    draw_line(canvas, on_page(record, contour.points_mm, view), contour.closed, kDroppedLoop);
   for (const Contour& contour : record.found_contours)
     draw_line(canvas, on_page(record, contour.points_mm, view), contour.closed, kFoundEdge);
   if (!record.accepted()) return;
@@ -140,6 +143,7 @@ std::string deviation_picture(const RunRecord& record, Look look) {
   draw_colour_bar(canvas, map, layout.side);
   std::vector<LegendItem> legend = {kWorst, kFoundEdge};
   if (record.accepted() && record.has_toolpath) legend.push_back(kToolPath);
+  if (!record.dropped_contours.empty()) legend.push_back(kDroppedLoop);
   draw_legend(canvas, legend, kMargin, layout.legend_y, kPictureWidth - 2.0 * kMargin);
   return canvas.png();
 }

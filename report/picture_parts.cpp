@@ -156,7 +156,8 @@ void draw_flags(Canvas& canvas, const std::vector<Flag>& flags, const Box& bound
     canvas.polyline(leader, false, {kInk, 2.0, {}, 1.0});
   }
   for (std::size_t i = 0; i < flags.size(); ++i) {
-    canvas.disc(anchors[i], 7.0, flags[i].colour, {kInk, 2.0, {}, 1.0});
+    canvas.disc(anchors[i], 9.0, {255, 255, 255}, {{255, 255, 255}, 1.0, {}, 1.0});
+    canvas.disc(anchors[i], 6.5, flags[i].colour, {kInk, 2.0, {}, 1.0});
     if (boxes[i].width == 0.0) continue;
     canvas.rounded_box(boxes[i], 8.0, {255, 255, 255}, {kInk, 2.0, {}, 1.0});
     canvas.rectangle({boxes[i].x + 3.0, boxes[i].y + 6.0, 7.0, boxes[i].height - 12.0}, flags[i].colour);

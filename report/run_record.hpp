@@ -29,9 +29,12 @@ struct ContourError {
   std::vector<double> arc_mm;
   std::vector<double>
       rigid_mm;  ///< distance found edge - nominal contour carried rigidly; NaN where no edge was seen
-  std::vector<double>
-      across_mm;  ///< signed, in the surface, of the corrected contour to the found edge; NaN: not seen
-  std::vector<double> normal_mm;  ///< signed, along the surface normal, to the scan; NaN: not seen
+  /// From the corrected contour to the found edge, signed, in the surface and across the contour: positive
+  /// towards the void (the part has more material than nominal there); NaN: not seen.
+  std::vector<double> across_mm;
+  /// From the corrected contour to the scan, signed, along the surface normal: positive outside the material;
+  /// NaN: not seen.
+  std::vector<double> normal_mm;
 };
 
 /// Statistics of one set of signed deviations, mm (inspection: RMS about zero, sigma about the mean,
@@ -106,6 +109,8 @@ struct RunRecord {
   TriangleMesh cad;                 ///< CAD frame
   std::vector<Contour> cad_contours;    ///< accepted, CAD frame
   std::vector<Contour> found_contours;  ///< found in the scan, scan frame local
+  std::vector<Contour>
+      dropped_contours;  ///< loops of the scan that were found and not used, scan frame local
 
   // Tool path
   ToolPath nominal_path;              ///< CAD frame

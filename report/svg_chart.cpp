@@ -81,7 +81,7 @@ std::string grid(const Axis& x, const Axis& y, const std::string& x_label, const
   }
   for (const double value : x.ticks()) {
     svg += line(x.at(value), kTop, x.at(value), y.from_px, "stroke=\"#e1e5e9\"");
-    svg += text(x.at(value), y.from_px + 19.0, "middle", fixed_text(value, digits_for_step(x.step)));
+    svg += text(x.at(value), y.from_px + 19.0, "middle", minus_text(value, digits_for_step(x.step)));
   }
   svg += rectangle(kLeft, kTop, kRight - kLeft, y.from_px - kTop, "fill=\"none\" stroke=\"#6b747e\"");
   svg += text(0.5 * (kLeft + kRight), height - 8.0, "middle", x_label, "soft");
@@ -143,7 +143,7 @@ std::string series_lines(const ChartSeries& series, const std::vector<double>& x
   return svg;
 }
 
-std::string legend(const LineChart& chart) {
+std::string legend(const LineChart& chart, bool has_limits) {
   std::string svg;
   double x = kLeft;
   const auto advance = [&](const std::string& name) {
@@ -162,7 +162,7 @@ std::string legend(const LineChart& chart) {
     svg += rectangle(x, 14.0, 26.0, 14.0, "fill=\"" + to_hex(bands.colour) + "\" stroke=\"#8a929b\"");
     advance(bands.name);
   }
-  if (!chart.limits.empty()) {
+  if (has_limits) {
     svg += line(x, 21.5, x + 26.0, 21.5, "stroke=\"#b3261e\" stroke-width=\"2\" stroke-dasharray=\"3 3\"");
     advance(chart.limit_name);
   }
@@ -230,12 +230,15 @@ std::string line_chart(const LineChart& chart) {
       svg += rectangle(x.at(from), kTop, std::max(1.5, x.at(to) - x.at(from)), bottom - kTop,
                        "fill=\"" + to_hex(bands.colour) + "\"");
   svg += grid(x, y, chart.x_label, chart.y_label, chart.height_px);
+  bool has_limits = false;
   for (const double limit : chart.limits)
-    if (limit >= y.low && limit <= y.high)
+    if (limit >= y.low && limit <= y.high) {
+      has_limits = true;
       svg += line(kLeft, y.at(limit), kRight, y.at(limit),
                   "stroke=\"#b3261e\" stroke-width=\"2\" stroke-dasharray=\"3 3\"");
+    }
   for (const ChartSeries& series : chart.series) svg += series_lines(series, chart.x, x, y);
-  svg += legend(chart);
+  svg += legend(chart, has_limits);
   svg += "<line class=\"cursor\" visibility=\"hidden\" x1=\"0\" x2=\"0\"" + attribute("y1", px(kTop)) +
          attribute("y2", px(bottom)) + " stroke=\"#1d2126\"/>";
   svg += "<text class=\"readout\"" + attribute("x", px(kLeft + 8.0)) + attribute("y", px(kTop + 18.0)) +

@@ -211,6 +211,11 @@ RunRecord sample_record() {
   record.cad_contours = {circle(kHoleRadius, false, pose(), Eigen::Vector3d::Zero())};
   add_scan(record);
   record.found_contours = {circle(kHoleRadius, true, pose(), record.cloud.offset_mm)};
+  record.dropped_contours = {record.found_contours[0]};
+  for (Eigen::Vector3d& p : record.dropped_contours[0].points_mm)
+    p = pose() * Eigen::Vector3d(0.37 * (pose().inverse() * (p + record.cloud.offset_mm)) +
+                                 Eigen::Vector3d(105, -60, 0)) -
+        record.cloud.offset_mm;
   add_segments(record);
   add_path(record);
   add_errors(record);

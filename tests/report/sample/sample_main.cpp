@@ -5,6 +5,7 @@
 
 #include "../sample_record.hpp"
 #include "report/picture.hpp"
+#include "report/write_html.hpp"
 
 namespace {
 
@@ -23,6 +24,9 @@ int main(int argc, char** argv) {
   put(folder + "/oblique.png", report::deviation_picture(record, report::Look::kOblique));
   put(folder + "/shift.png", report::path_shift_picture(record));
   put(folder + "/axes.png", report::path_axes_picture(record));
+  put(folder + "/report.html", report::write_html(record));
+  put(folder + "/refused.html", report::write_html(test::refused_record()));
+  put(folder + "/bare.html", report::write_html(test::barely_started_record()));
   report::ContourDrawing drawing;
   drawing.title = "Contours of porthole.stl";
   drawing.subtitle = "open mesh, boundary loops";
