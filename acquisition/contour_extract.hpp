@@ -16,8 +16,8 @@ namespace arris {
 struct ContourOptions {
   double sharp_edge_rad = 0.52;       ///< a closed mesh: an edge whose faces turn more is a contour edge (30 degrees)
   double angle_gap_rad = 1.5707963;   ///< a cloud: a point whose neighbours leave a larger gap lies on the boundary
-  double radius_spacings_ratio = 2.5; ///< neighbourhood of the gap test, in local point spacings
-  double link_spacings_ratio = 3.5;   ///< boundary points farther apart than this are not chained
+  double disc_spacings_ratio = 2.0;   ///< a cloud: radius of the empty disc that rolls along the edge, in spacings
+  double outsized_edge_ratio = 5.0;   ///< a mesh scan: a triangle edge longer than this times the median fills a hole
   double min_length_mm = 0.0;         ///< shorter loops are dropped; 0: twenty point spacings
   int threads = 0;
 };
@@ -35,20 +35,31 @@ struct FoundContour {
 struct ContourSet {
   std::vector<FoundContour> found;
   std::vector<FoundContour> dropped;
+  std::vector<std::string> notes;  ///< oddities of the mesh, filled holes
 };
 
-/// Contours of a mesh: one-face edges chained into loops when it is open, else sharp edges chained between corners
-/// into loops. Vertices must be welded (read_mesh does). Normals: the mean of the faces beside the edge.
-/// Orientation: material on the left, seen from the air side. Throws Error(kInput) for a non-manifold boundary.
+/// Contours of a mesh. An open mesh: its one-face edges, chained to loops around the faces' fans, so that loops which
+/// touch at a vertex stay apart. A closed mesh: smooth regions are flooded up to the edges sharper than
+/// sharp_edge_rad, and each region's border is chained the same way; of two regions that share a whole loop the
+/// larger keeps it (a hole's rim belongs to the face, not to its wall).
+/// Vertices must be welded (read_mesh does). Normals: the faces of the region beside the edge. Orientation: material
+/// on the left, seen from the air side. Edges with more than two faces are skipped and named in `notes`.
 [[nodiscard]] ContourSet mesh_contours(const TriangleMesh& mesh, const ContourOptions& options);
 
-/// Indices of the boundary points of a cloud, by the largest angle gap between neighbours in the tangent plane.
+/// Contours of a scan that is a mesh: as an open mesh, after the triangles that a scanner's software stretched over
+/// holes are taken out (an edge longer than outsized_edge_ratio times the median); their rims say so in `note`.
+[[nodiscard]] ContourSet scan_mesh_contours(const Scan& scan, const ContourOptions& options);
+
+/// Indices of the points whose 12 nearest leave an angle gap of more than angle_gap_rad in the tangent plane.
 [[nodiscard]] std::vector<std::int32_t> boundary_points(std::span<const Eigen::Vector3d> points_mm,
                                                         const NearestPoints& tree, const LocalPlanes& planes,
                                                         const ContourOptions& options);
 
-/// Boundary points chained to ordered loops; loops that are too short, or open by more than 3 link lengths, dropped.
-/// `planes.normals` must be oriented (out of the material) for the loops to be oriented.
+/// Contours of a cloud: an empty disc of disc_spacings_ratio local spacings rolls along the boundary points in the
+/// tangent planes and touches the loop's points in order (the border of a local alpha shape: Edelsbrunner et al.,
+/// IEEE Trans. Inf. Theory 29(4), 1983). Loops shorter than min_length_mm are voids of the sampling and dropped.
+/// `planes.normals` must be oriented alike; out of the material for the material to lie on the left.
+/// Cost O(N log N); the loops do not depend on the order of the points beyond where they start.
 [[nodiscard]] ContourSet cloud_contours(std::span<const Eigen::Vector3d> points_mm, const NearestPoints& tree,
                                         const LocalPlanes& planes, const ContourOptions& options);
 

@@ -1,5 +1,7 @@
 #include "cli/prepare.hpp"
 
+#include <Eigen/Geometry>
+
 #include "acquisition/geometry/orient.hpp"
 #include "acquisition/types/error.hpp"
 

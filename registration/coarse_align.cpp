@@ -17,6 +17,7 @@ constexpr std::size_t kSurfaceSample = 160;
 constexpr std::size_t kEdgeSample = 120;
 constexpr std::size_t kRefined = 4;            // candidates a hypothesis that are refined
 constexpr double kFreeEigenvalueRatio = 1e-4;  // methods: slippage, Gelfand and Guibas 2003
+constexpr double kEdgeKept = 0.75, kSurfaceKept = 0.9;
 constexpr double kMirrorBetterRatio = 0.5;
 constexpr double kUnitRatios[] = {25.4, 1000.0, 10.0, 1.0 / 25.4, 1.0 / 1000.0, 0.1};
 
@@ -55,6 +56,15 @@ ScanModel hypothesis(const ScanModel& scan, bool flip, bool mirror) {
   return light;
 }
 
+/// Mean of the smallest share of the values: what a gap or a clamp adds is not judged.
+double trimmed_mean(std::vector<double>& values, double kept_ratio) {
+  std::sort(values.begin(), values.end());
+  const std::size_t kept = std::max<std::size_t>(1, static_cast<std::size_t>(kept_ratio * double(values.size())));
+  double sum = 0.0;
+  for (std::size_t i = 0; i < kept; ++i) sum += values[i];
+  return sum / static_cast<double>(kept);
+}
+
 struct Candidate {
   RigidMotion scan_from_cad = RigidMotion::Identity();
   double score_mm = 1e300;
@@ -78,27 +88,36 @@ class Search {
   double size_mm() const { return size_mm_; }
   double cap_mm() const { return cap_mm_; }
 
-  /// Capped rms, both ways: contour samples to the scan's edge points, scan points in the band to the surface.
+  /// Trimmed rms, both ways: contour samples to the scan's edge points, scan points in the band to the surface.
   double score(const ScanModel& light, const NearestPoints& edges, const RigidMotion& scan_from_cad) const {
     const double cap2 = cap_mm_ * cap_mm_;
-    double edge2 = 0.0;
+    std::vector<double> edge2, surface2;
     for (const Eigen::Vector3d& p : samples_mm_) {
       const Neighbour nearest = edges.nearest(scan_from_cad * p);
-      edge2 += nearest.index < 0 ? cap2 : std::min(cap2, nearest.distance2_mm2);
+      edge2.push_back(nearest.index < 0 ? cap2 : std::min(cap2, nearest.distance2_mm2));
     }
-    edge2 /= static_cast<double>(samples_mm_.size());
     const RigidMotion cad_from_scan = scan_from_cad.inverse();
-    double surface2 = 0.0, count = 0.0;
-    for (std::size_t i = 0; i < light.points_mm.size() && count < double(kSurfaceSample); ++i) {
+    for (std::size_t i = 0; i < light.points_mm.size() && surface2.size() < kSurfaceSample; ++i) {
       const Eigen::Vector3d x = cad_from_scan * light.points_mm[i];
       if (pair_edge(cad_, x, options_.band_mm).contour < 0) continue;
       const SurfacePoint foot = cad_.surface.closest(x, cap_mm_);
       const bool agrees = foot.triangle >= 0 && foot.normal.dot(cad_from_scan.linear() * light.normals[i]) > 0.5;
-      surface2 += agrees ? std::min(cap2, foot.distance_mm * foot.distance_mm) : cap2;
-      count += 1.0;
+      surface2.push_back(agrees ? std::min(cap2, foot.distance_mm * foot.distance_mm) : cap2);
     }
-    surface2 = count >= 10.0 ? surface2 / count : cap2;
-    return std::sqrt(edge2 + surface2);
+    if (surface2.size() < 10) return cap_mm_;
+    return std::sqrt(trimmed_mean(edge2, kEdgeKept) + trimmed_mean(surface2, kSurfaceKept));
+  }
+
+  /// The same scan with only the edge points of loops that run along the contours at a start pose.
+  ScanModel along_contours(const ScanModel& light, const RigidMotion& start) const {
+    std::vector<Eigen::Vector3d> edges;
+    const std::vector<LoopAssignment> assigned = assign_loops(cad_, light.loops, start, 2.0 * options_.band_mm);
+    for (std::size_t l = 0; l < light.loops.size(); ++l)
+      if (assigned[l].contour >= 0)
+        edges.insert(edges.end(), light.loops[l].points_mm.begin(), light.loops[l].points_mm.end());
+    if (edges.empty()) edges = light.edge_mm;
+    return {light.points_mm, light.normals, NearestPoints({}), {}, every(edges, kEdgeSample), {}, light.spacing_mm,
+            light.noise_sigma_mm, light.side};
   }
 
   Candidate refine(const ScanModel& light, const NearestPoints& edges, const RigidMotion& start) const {
@@ -109,7 +128,7 @@ class Search {
     icp.start_scale_mm = 0.6 * cap_mm_;
     icp.band_mm = options_.band_mm;
     icp.threads = 1;
-    const RigidIcpResult result = icp_point_to_plane(cad_, light, start, icp);
+    const RigidIcpResult result = icp_point_to_plane(cad_, along_contours(light, start), start, icp);
     Candidate candidate;
     if (!result.usable()) return candidate;
     candidate.scan_from_cad = result.scan_from_cad;

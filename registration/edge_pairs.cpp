@@ -1,5 +1,8 @@
 #include "registration/edge_pairs.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
+
 namespace arris {
 
 EdgePair pair_edge(const CadModel& cad, const Eigen::Vector3d& p_cad_mm, double reach_mm) {
@@ -19,6 +22,35 @@ EdgePair pair_edge(const CadModel& cad, const Eigen::Vector3d& p_cad_mm, double 
   pair.across_mm = apart.dot(pair.across);
   pair.normal_mm = apart.dot(pair.normal);
   return pair;
+}
+
+std::vector<LoopAssignment> assign_loops(const CadModel& cad, const std::vector<Contour>& loops,
+                                         const RigidMotion& scan_from_cad, double band_mm) {
+  constexpr std::size_t kSample = 60;
+  const RigidMotion cad_from_scan = scan_from_cad.inverse();
+  std::vector<LoopAssignment> assignments;
+  for (const Contour& loop : loops) {
+    std::vector<double> distance_mm;
+    std::vector<int> votes(cad.contours.size(), 0);
+    const std::size_t stride = std::max<std::size_t>(1, loop.points_mm.size() / kSample);
+    for (std::size_t i = 0; i < loop.points_mm.size(); i += stride) {
+      const EdgePair pair = pair_edge(cad, cad_from_scan * loop.points_mm[i], 1e9);
+      distance_mm.push_back(pair.foot.distance_mm);
+      if (pair.contour >= 0) ++votes[static_cast<std::size_t>(pair.contour)];
+    }
+    LoopAssignment assignment;
+    if (!distance_mm.empty()) {
+      const auto middle = distance_mm.begin() + static_cast<std::ptrdiff_t>(distance_mm.size() / 2);
+      std::nth_element(distance_mm.begin(), middle, distance_mm.end());
+      assignment.median_mm = *middle;
+      const std::size_t contour =
+          static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
+      const double size_mm = cad.contours[contour].length_mm() / 6.28;
+      if (assignment.median_mm < std::min(0.1 * size_mm, 0.5 * band_mm)) assignment.contour = static_cast<int>(contour);
+    }
+    assignments.push_back(assignment);
+  }
+  return assignments;
 }
 
 }  // namespace arris

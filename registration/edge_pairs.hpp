@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "registration/normal_equations.hpp"
 #include "registration/scene.hpp"
@@ -19,5 +20,16 @@ struct EdgePair {
 
 /// Nearest contour and the two components across the tangent; contour -1 beyond reach_mm.
 [[nodiscard]] EdgePair pair_edge(const CadModel& cad, const Eigen::Vector3d& p_cad_mm, double reach_mm);
+
+/// Points of one scan loop, and whether the loop runs along an accepted contour.
+struct LoopAssignment {
+  int contour = -1;          ///< accepted contour that it follows; -1: dropped
+  double median_mm = 0.0;    ///< median distance to the nearest contour at the pose given
+};
+
+/// Which scan loops run along an accepted CAD contour at a pose: median distance within a tenth of the contour's size
+/// and half the band. The border of the scanned band, clamps and other openings do not.
+[[nodiscard]] std::vector<LoopAssignment> assign_loops(const CadModel& cad, const std::vector<Contour>& loops,
+                                                       const RigidMotion& scan_from_cad, double band_mm);
 
 }  // namespace arris

@@ -10,25 +10,63 @@ namespace {
 
 constexpr std::size_t kArcs = 64;
 constexpr std::size_t kKeptShifts = 4;
+constexpr double kNearlyClosedRatio = 0.15;   // ends this near, in lengths: a loop with a gap
+constexpr double kShortestChainRatio = 0.35;  // of the CAD loop; a shorter piece does not tell where it belongs
+constexpr double kRaggedRatios[] = {1.0, 0.9};  // a ragged chain is longer than the edge it follows
 
-/// Points at equal arcs of a loop; a ragged scan loop is smoothed to the scale of one arc by the mean of each arc.
-std::vector<Eigen::Vector3d> at_equal_arcs(const Contour& loop) {
-  const Curve curve(loop);
+/// Means over n equal arcs of a stretch of the curve, which smooths a ragged scan edge to the scale of an arc.
+std::vector<Eigen::Vector3d> arc_means(const Curve& curve, double start_mm, double stretch_mm) {
   constexpr int kSamplesPerArc = 4;
   std::vector<Eigen::Vector3d> points(kArcs, Eigen::Vector3d::Zero());
-  const double arc_mm = curve.length_mm() / static_cast<double>(kArcs);
+  const double arc_mm = stretch_mm / static_cast<double>(kArcs);
   for (std::size_t i = 0; i < kArcs; ++i)
     for (int k = 0; k < kSamplesPerArc; ++k) {
-      const double s_mm = (static_cast<double>(i) + (k + 0.5) / kSamplesPerArc) * arc_mm;
+      const double s_mm = start_mm + (static_cast<double>(i) + (k + 0.5) / kSamplesPerArc) * arc_mm;
       points[i] += curve.point_mm(curve.wrap_mm(s_mm)) / kSamplesPerArc;
     }
   return points;
 }
 
-bool comparable(const Contour& a, const Contour& b, double length_ratio) {
-  if (!a.closed || !b.closed || a.points_mm.size() < 8 || b.points_mm.size() < 8) return false;
-  const double ratio = length_mm(a) / length_mm(b);
-  return ratio < length_ratio && ratio > 1.0 / length_ratio;
+/// A loop that only a gap keeps open is taken as closed.
+Contour without_small_gap(Contour loop) {
+  if (!loop.closed && loop.points_mm.size() >= 8)
+    loop.closed = (loop.points_mm.front() - loop.points_mm.back()).norm() < kNearlyClosedRatio * length_mm(loop);
+  return loop;
+}
+
+/// Local minima of the fit over all start shifts, best first.
+void add_best_shifts(const std::vector<RigidFit>& fits, int cad_loop, int scan_loop, std::vector<LoopMatch>& matches) {
+  std::vector<LoopMatch> local;
+  const std::size_t n = fits.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    const RigidFit& fit = fits[k];
+    if (!fit.usable() || fit.rms_mm > fits[(k + n - 1) % n].rms_mm || fit.rms_mm > fits[(k + 1) % n].rms_mm) continue;
+    local.push_back({fit.to_from, fit.rms_mm, cad_loop, scan_loop});
+  }
+  std::stable_sort(local.begin(), local.end(), [](auto& a, auto& b) { return a.rms_mm < b.rms_mm; });
+  if (local.size() > kKeptShifts) local.resize(kKeptShifts);
+  matches.insert(matches.end(), local.begin(), local.end());
+}
+
+std::vector<RigidFit> fits_of_closed(const Curve& cad, const Curve& scan) {
+  const std::vector<Eigen::Vector3d> from = arc_means(cad, 0.0, cad.length_mm());
+  std::vector<Eigen::Vector3d> to = arc_means(scan, 0.0, scan.length_mm());
+  std::vector<RigidFit> fits;
+  for (std::size_t shift = 0; shift < kArcs; ++shift) {
+    fits.push_back(fit_rigid(from, to));
+    std::rotate(to.begin(), to.begin() + 1, to.end());
+  }
+  return fits;
+}
+
+std::vector<RigidFit> fits_of_chain(const Curve& cad, const Curve& scan, double ragged_ratio) {
+  const std::vector<Eigen::Vector3d> to = arc_means(scan, 0.0, scan.length_mm());
+  std::vector<RigidFit> fits;
+  for (std::size_t shift = 0; shift < kArcs; ++shift) {
+    const double start_mm = cad.length_mm() * static_cast<double>(shift) / static_cast<double>(kArcs);
+    fits.push_back(fit_rigid(arc_means(cad, start_mm, ragged_ratio * scan.length_mm()), to));
+  }
+  return fits;
 }
 
 }  // namespace
@@ -36,28 +74,24 @@ bool comparable(const Contour& a, const Contour& b, double length_ratio) {
 std::vector<LoopMatch> match_loops(const std::vector<Contour>& cad_loops, const std::vector<Contour>& scan_loops,
                                    double length_ratio) {
   std::vector<LoopMatch> matches;
-  for (std::size_t c = 0; c < cad_loops.size(); ++c)
+  for (std::size_t c = 0; c < cad_loops.size(); ++c) {
+    if (!cad_loops[c].closed || cad_loops[c].points_mm.size() < 8) continue;
+    const Curve cad(cad_loops[c]);
     for (std::size_t l = 0; l < scan_loops.size(); ++l) {
-      if (!comparable(cad_loops[c], scan_loops[l], length_ratio)) continue;
-      const std::vector<Eigen::Vector3d> from = at_equal_arcs(cad_loops[c]);
-      std::vector<Eigen::Vector3d> to = at_equal_arcs(scan_loops[l]);
-      std::vector<RigidFit> fits;
-      for (std::size_t shift = 0; shift < kArcs; ++shift) {
-        fits.push_back(fit_rigid(from, to));
-        std::rotate(to.begin(), to.begin() + 1, to.end());
+      if (scan_loops[l].points_mm.size() < 8) continue;
+      const Contour loop = without_small_gap(scan_loops[l]);
+      const Curve scan(loop);
+      const double ratio = scan.length_mm() / cad.length_mm();
+      if (ratio > length_ratio) continue;
+      const int cad_index = static_cast<int>(c), scan_index = static_cast<int>(l);
+      if (loop.closed && ratio > 1.0 / length_ratio) {
+        add_best_shifts(fits_of_closed(cad, scan), cad_index, scan_index, matches);
+      } else if (!loop.closed && ratio > kShortestChainRatio) {
+        for (const double ragged : kRaggedRatios)
+          add_best_shifts(fits_of_chain(cad, scan, ragged), cad_index, scan_index, matches);
       }
-      std::vector<LoopMatch> local;
-      for (std::size_t k = 0; k < kArcs; ++k) {
-        const RigidFit& fit = fits[k];
-        const RigidFit& before = fits[(k + kArcs - 1) % kArcs];
-        const RigidFit& after = fits[(k + 1) % kArcs];
-        if (!fit.usable() || fit.rms_mm > before.rms_mm || fit.rms_mm > after.rms_mm) continue;
-        local.push_back({fit.to_from, fit.rms_mm, static_cast<int>(c), static_cast<int>(l)});
-      }
-      std::stable_sort(local.begin(), local.end(), [](auto& a, auto& b) { return a.rms_mm < b.rms_mm; });
-      if (local.size() > kKeptShifts) local.resize(kKeptShifts);
-      matches.insert(matches.end(), local.begin(), local.end());
     }
+  }
   std::stable_sort(matches.begin(), matches.end(), [](auto& a, auto& b) { return a.rms_mm < b.rms_mm; });
   return matches;
 }

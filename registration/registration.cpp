@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "acquisition/geometry/parallel_for.hpp"
+#include "registration/edge_pairs.hpp"
 
 namespace arris {
 namespace {
@@ -22,6 +22,19 @@ void flip(ScanModel& scan) {
     for (Eigen::Vector3d& n : loop.normals) n = -n;
     std::reverse(loop.points_mm.begin(), loop.points_mm.end());
     std::reverse(loop.normals.begin(), loop.normals.end());
+  }
+}
+
+/// Keeps the edge points of the loops that run along an accepted contour; the rest is told, not used.
+void drop_other_loops(const CadModel& cad, ScanModel& scan, const RigidMotion& scan_from_cad, double band_mm,
+                      std::vector<LoopAssignment>& assigned) {
+  assigned = assign_loops(cad, scan.loops, scan_from_cad, band_mm);
+  scan.edge_mm.clear();
+  scan.edge_normals.clear();
+  for (std::size_t l = 0; l < scan.loops.size(); ++l) {
+    if (assigned[l].contour < 0) continue;
+    scan.edge_mm.insert(scan.edge_mm.end(), scan.loops[l].points_mm.begin(), scan.loops[l].points_mm.end());
+    scan.edge_normals.insert(scan.edge_normals.end(), scan.loops[l].normals.begin(), scan.loops[l].normals.end());
   }
 }
 
@@ -169,6 +182,7 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   }
   if (result.coarse.flipped_normals) flip(scan);
   scan.side = SideKnown::kYes;
+  drop_other_loops(cad, scan, result.coarse.scan_from_cad, options.coarse.band_mm, result.loops);
   RigidIcpOptions rigid = options.rigid;
   rigid.start_scale_mm = std::max(3.0 * result.coarse.score_mm, 4.0 * scan.spacing_mm);
   result.rigid = icp_point_to_plane(cad, scan, result.coarse.scan_from_cad, rigid);

@@ -8,6 +8,7 @@
 #include "registration/coarse_align.hpp"
 #include "registration/deformation_field.hpp"
 #include "registration/edge_fit.hpp"
+#include "registration/edge_pairs.hpp"
 #include "registration/rigid_icp.hpp"
 #include "registration/subdivision_field.hpp"
 #include "registration/subdivision_icp.hpp"
@@ -35,6 +36,7 @@ struct Registration {
   CoarseAlignment coarse;
   RigidIcpResult rigid;                       ///< usable() tells whether there is a pose
   std::vector<std::string> free_directions;
+  std::vector<LoopAssignment> loops;          ///< one a loop of the scan: the contour it runs along, or dropped
   std::shared_ptr<const DeformationField> field;  ///< null when no pose was found
   std::vector<ContourResult> contours;        ///< one an accepted contour; of method rigid, with one rigid segment
   std::vector<std::string> refusals;          ///< in plain words

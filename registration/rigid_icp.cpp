@@ -15,6 +15,7 @@ namespace {
 constexpr double kSurfaceCountsAsPoints = 100.0;  // correlated misfit: see icp_point_to_plane
 constexpr double kCosNormalsAgree = 0.5;          // correspondences need normals within 60 degrees
 constexpr double kAnneal = 0.7;                   // robust scale of the next round over this one
+constexpr double kDamping = 1e-4;                 // of the mean information: directions that nothing determines stay
 constexpr std::size_t kChunk = 256;
 
 double median_of(std::vector<double>& values) {
@@ -168,8 +169,8 @@ class PointToPlane {
     NormalEquations both = round.surface;
     both += round.edge;
     Eigen::Matrix<double, 6, 1> prior;
-    prior << Eigen::Vector3d::Constant(1e-6 * both.information.topLeftCorner<3, 3>().trace()),
-        Eigen::Vector3d::Constant(1e-6 * both.information.bottomRightCorner<3, 3>().trace());
+    prior << Eigen::Vector3d::Constant(kDamping * both.information.topLeftCorner<3, 3>().trace()),
+        Eigen::Vector3d::Constant(kDamping * both.information.bottomRightCorner<3, 3>().trace());
     const Eigen::Matrix<double, 6, 1> delta = both.solve(prior);
     cad_from_scan_ = motion_of(delta, pivot_) * cad_from_scan_;
     const double reach_mm = std::sqrt(both.information.topLeftCorner<3, 3>().trace() / (2.0 * both.weight + 1e-12));
