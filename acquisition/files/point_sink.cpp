@@ -10,6 +10,12 @@
 namespace arris::files {
 namespace {
 
+/// Each axis compared by itself: Eigen's maxCoeff may pass over a NaN.
+bool is_coordinate(const Eigen::Vector3d& p_mm) {
+  return std::abs(p_mm.x()) < kFarthest_mm && std::abs(p_mm.y()) < kFarthest_mm &&
+         std::abs(p_mm.z()) < kFarthest_mm;
+}
+
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
 
 /// Room for `count` items in 2 MiB pages where the kernel grants them: page faults are most of a naive
@@ -83,8 +89,7 @@ void drop_triangles(const Source& source, Loaded& loaded, const std::vector<std:
 }  // namespace
 
 Eigen::Vector3d offset_for(std::vector<Eigen::Vector3d> sample_mm) {
-  std::erase_if(sample_mm,
-                [](const Eigen::Vector3d& p) { return !(p.cwiseAbs().maxCoeff() < kFarthest_mm); });
+  std::erase_if(sample_mm, [](const Eigen::Vector3d& p_mm) { return !is_coordinate(p_mm); });
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   const auto near = [](const Eigen::Vector3d& p) { return p.cwiseAbs().maxCoeff() <= kNear_mm; };
   if (std::all_of(sample_mm.begin(), sample_mm.end(), near)) return offset;
@@ -128,9 +133,7 @@ void PointSink::store_points(std::size_t at, const RowBlock& block, std::size_t 
   std::size_t nonfinite = 0;
   for (std::size_t i = 0; i < count; ++i) {
     Eigen::Vector3d p_mm = block.p[i] * to_mm;
-    const bool finite = std::abs(p_mm.x()) < kFarthest_mm && std::abs(p_mm.y()) < kFarthest_mm &&
-                        std::abs(p_mm.z()) < kFarthest_mm;
-    if (!finite) {
+    if (!is_coordinate(p_mm)) {
       ++nonfinite;
       p_mm.setConstant(std::numeric_limits<double>::quiet_NaN());
     }

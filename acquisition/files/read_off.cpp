@@ -46,11 +46,12 @@ class OffText {
 
   Error ends_early(const char* part, std::size_t found, std::size_t needed) const {
     return bad_file(source_, "the OFF file ends early", "", std::to_string(found) + " " + part,
-                    std::to_string(needed) + ", as its header says", "export or copy the file again");
+                    std::to_string(needed), "export or copy the file again");
   }
 
   void read_header() {
     std::string_view line = statement();
+    if (line.empty()) throw ends_early("lines that are no comments", 0, 1);
     const std::string_view keyword = line.substr(0, line.find_first_of(" \t"));
     normals_ = keyword == "NOFF" || keyword == "CNOFF" || keyword == "NCOFF";
     if (!normals_ && keyword != "OFF" && keyword != "COFF")

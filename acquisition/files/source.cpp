@@ -1,7 +1,7 @@
 #include "acquisition/files/source.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -38,6 +38,8 @@ std::string quoted(std::string_view text, std::size_t longest) {
 }
 
 std::string line_of(const Source& source, const char* place) {
+  const char* const end = source.bytes.data() + source.bytes.size();
+  if (std::less<>()(place, source.bytes.data()) || std::less<>()(end, place)) return {};
   const auto lines = std::count(source.bytes.data(), place, '\n');
   return "line " + std::to_string(lines + 1);
 }

@@ -47,7 +47,7 @@ struct Loaded {
 /// The same, trimmed and between quotes.
 [[nodiscard]] std::string quoted(std::string_view text, std::size_t longest = 40);
 
-/// "line 7" for a place in the bytes; counts line ends, so only for messages.
+/// "line 7" for a place in the bytes; counts line ends, so only for messages. Empty for a place outside.
 [[nodiscard]] std::string line_of(const Source& source, const char* place);
 
 /// The unit that a comment names after the word unit ("length unit = meters", "units: inch"):

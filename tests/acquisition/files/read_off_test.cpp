@@ -31,6 +31,7 @@ TEST(ReadOff, SaysWhatIsWrong) {
       {"STOFF\n1 0 0\n", "this kind of OFF file is not read"},
       {"OFF BINARY\n", "binary OFF files are not read"},
       {"OFF\n", "the OFF file ends early"},
+      {"#\1", "the OFF file ends early (part.off): found 0 lines that are no comments"},
       {"OFF\nfour 1 0\n", "the OFF counts cannot be read"},
       {"OFF\n4\n", "the OFF counts cannot be read"},
       {"OFF\n4 1 0\n0 0 0\n", "the OFF file ends early"},

@@ -103,8 +103,8 @@ TEST(Offset, ZeroForAPartNearTheOriginSoThatFloatsStayAsTheyAre) {
 TEST(Offset, MedianInWholeMillimetresSoThatStraysDoNotMatter) {
   std::vector<Eigen::Vector3d> sample(100, Eigen::Vector3d(6.6e8, 5.6e9 + 0.4, -0.2));
   sample[0] = {0, 0, 0};
-  sample[1] = {std::nan(""), 0, 0};
-  sample[2] = {1e300, 0, 0};
+  for (int axis = 0; axis < 3; ++axis) sample[static_cast<std::size_t>(1 + axis)][axis] = std::nan("");
+  for (int axis = 0; axis < 3; ++axis) sample[static_cast<std::size_t>(4 + axis)][axis] = 1e300;
   const Eigen::Vector3d offset = files::offset_for(sample);
   EXPECT_EQ(offset, Eigen::Vector3d(6.6e8, 5.6e9, 0.0));
   EXPECT_FALSE(std::signbit(offset.z()));
