@@ -45,4 +45,26 @@ std::string contours_json(const std::string& file, const ContourSet& contours) {
   return text_of({{"file", file}, {"contours", found}, {"dropped", dropped}, {"notes", contours.notes}});
 }
 
+std::string info_json(const std::string& file, const FileInfo& info) {
+  const auto vector_json = [](const Eigen::Vector3d& v) { return Json{v.x(), v.y(), v.z()}; };
+  return text_of({{"file", file},
+                  {"format", info.format},
+                  {"bytes", info.bytes},
+                  {"sha256", info.sha256},
+                  {"points", info.points},
+                  {"finite", info.finite},
+                  {"triangles", info.triangles},
+                  {"flat_triangles", info.flat_triangles},
+                  {"has_normals", info.has_normals},
+                  {"has_colours", info.has_colours},
+                  {"extra_names", info.extra_names},
+                  {"box_min", vector_json(info.box_min)},
+                  {"box_max", vector_json(info.box_max)},
+                  {"extent", vector_json(info.extent())},
+                  {"spacing", info.spacing},
+                  {"unit_hint", info.unit_hint},
+                  {"unit_guess", info.unit_guess},
+                  {"notes", info.notes}});
+}
+
 }  // namespace arris

@@ -199,7 +199,10 @@ std::string nearest_name(std::string_view wrong, const std::vector<std::string>&
     best = distance;
     nearest = name;
   }
-  return nearest;
+  if (!nearest.empty() || wrong.size() < 3) return nearest;
+  const auto begins = [&](const std::string& name) { return name.starts_with(wrong); };  // a unit left off
+  const auto longer = std::find_if(names.begin(), names.end(), begins);
+  return longer == names.end() ? std::string() : *longer;
 }
 
 std::string quote(std::string_view text) {

@@ -1,0 +1,180 @@
+// The real program, as a shell sees it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/cli/run_arris.hpp"
+
+namespace arris {
+namespace {
+
+using testing::Ran;
+using testing::run_arris;
+
+const std::filesystem::path kExample = std::filesystem::path(ARRIS_SOURCE_DIR) / "fixtures" / "example";
+
+/// Exactly one line, from the program.
+void expect_one_line(const Ran& ran, const std::string& holds) {
+  EXPECT_TRUE(ran.err.starts_with("arris: ")) << ran.err;
+  EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  EXPECT_NE(ran.err.find(holds), std::string::npos) << ran.err;
+}
+
+TEST(Program, HelpOfEveryCommandHasAnExample) {
+  for (const char* command : {"", "run", "inspect", "contours", "info", "recipe", "recipe check",
+                              "recipe print", "recipe new", "demo"}) {
+    const Ran ran = run_arris(std::string(command) + " --help");
+    EXPECT_EQ(ran.code, 0) << command;
+    EXPECT_NE(ran.out.find("Example:\n  arris " + std::string(command)), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find("Usage: arris"), std::string::npos) << ran.out;
+    EXPECT_TRUE(ran.err.empty()) << ran.err;
+  }
+}
+
+TEST(Program, ListsOnlyCommandsThatExist) {
+  const std::string help = run_arris("--help").out;
+  for (const char* later :
+       {"engrave", "post", "calibrate", "send", "station", "gpio", "batch", "archive", "trend", "study"})
+    EXPECT_EQ(help.find("  " + std::string(later) + " "), std::string::npos) << later;
+}
+
+TEST(Program, VersionIsOneLine) {
+  const Ran ran = run_arris("--version");
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_TRUE(ran.out.starts_with("arris ")) << ran.out;
+}
+
+TEST(Program, UsageErrorsAreTwo) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"", "required"},
+      {"rn x", "did you mean run?"},
+      {"run x.toml --scn y", "did you mean --scan?"},
+      {"run x.toml", "--scan is required"},
+      {"run x.toml --scan a b", "does not take \"b\""},
+      {"run --scan a", "RECIPE is required"},
+      {"contours x.stl --units km", "km"},
+      {"contours x.stl --accept one", "--accept"},
+      {"contours x.stl --out c.json", "--accept"},
+      {"info", "FILE is required"},
+      {"info a --threads x", "--threads"},
+      {"recipe", "required"},
+      {"recipe chek x", "did you mean check?"},
+      {"demo --part wing", "wing"},
+  };
+  for (const auto& [line, holds] : cases) {
+    const Ran ran = run_arris(line);
+    EXPECT_EQ(ran.code, 2) << line;
+    EXPECT_TRUE(ran.out.empty()) << ran.out;
+    expect_one_line(ran, holds);
+  }
+}
+
+TEST(Program, MissingFilesAreThreeAndLeaveNothing) {
+  const testing::TestFolder folder;
+  for (const char* line :
+       {"run none.toml --scan s.ply", "inspect none.toml --scan s.ply", "contours none.stl", "info none.ply",
+        "recipe check none.toml", "recipe print none.toml", "recipe new --cad none.stl"}) {
+    const Ran ran = run_arris(line, folder.path());
+    EXPECT_EQ(ran.code, 3) << line << ": " << ran.err;
+    expect_one_line(ran, "none.");
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(Program, MissingScanIsThree) {
+  const Ran ran = run_arris("run '" + (kExample / "recipe.toml").string() + "' --scan none.ply --out x");
+  EXPECT_EQ(ran.code, 3) << ran.err;
+  expect_one_line(ran, "none.ply");
+}
+
+TEST(Program, FullDiskIsThree) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
+  const Ran ran = run_arris("recipe print > /dev/full; exit $? #");
+  EXPECT_EQ(ran.code, 3);
+}
+
+TEST(Program, RecipePrintPassesRecipeCheck) {
+  const testing::TestFolder folder;
+  const Ran printed = run_arris("recipe print recipe.toml", kExample);
+  ASSERT_EQ(printed.code, 0) << printed.err;
+  folder.write("full.toml", printed.out);
+  for (const char* name : {"plate.stl", "contour.csv", "path.csv", "cell.toml"})
+    std::filesystem::copy_file(kExample / name, folder.path() / name);
+  const Ran checked = run_arris("recipe check full.toml", folder.path());
+  EXPECT_EQ(checked.code, 0) << checked.err;
+  EXPECT_EQ(checked.out, "full.toml: good\n");
+}
+
+TEST(Program, RecipeCheckNamesEveryProblemAndMissingFiles) {
+  const testing::TestFolder folder;
+  folder.write("r.toml",
+               "[part]\nnumber = \"A\"\ncad = \"no.stl\"\ncad_units = \"mm\"\nstat = \"free\"\n[scan]\nunits "
+               "= \"km\"\n");
+  const Ran ran = run_arris("recipe check r.toml", folder.path());
+  EXPECT_EQ(ran.code, 3);
+  EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 3) << ran.err;
+  for (const char* part : {"r.toml:5", "part.state", "r.toml:7", "no.stl"})
+    EXPECT_NE(ran.err.find(part), std::string::npos) << part << "\n" << ran.err;
+  const Ran json = run_arris("recipe check r.toml --json", folder.path());
+  EXPECT_EQ(json.code, 3);
+  EXPECT_NE(json.out.find("\"good\": false"), std::string::npos) << json.out;
+}
+
+TEST(Program, RecipeNewIsAGoodRecipe) {
+  const testing::TestFolder folder;
+  const std::string cad = (kExample / "plate.stl").string(), path = (kExample / "path.csv").string();
+  const Ran ran = run_arris("recipe new --cad '" + cad + "' --path '" + path + "' --part A-1 --out new.toml",
+                            folder.path());
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const Ran checked = run_arris("recipe check new.toml", folder.path());
+  EXPECT_EQ(checked.code, 0) << checked.err;
+  EXPECT_EQ(run_arris("recipe new --cad '" + cad + "' --out new.toml", folder.path()).code, 3)
+      << "it replaced a file";
+  const Ran printed = run_arris("recipe new --cad '" + cad + "'", folder.path());
+  folder.write("second.toml", printed.out);
+  EXPECT_EQ(run_arris("recipe check second.toml", folder.path()).code, 0) << printed.out;
+}
+
+TEST(Program, CellPrintAndCheck) {
+  const testing::TestFolder folder;
+  const Ran printed = run_arris("recipe print --cell cell.toml", kExample);
+  ASSERT_EQ(printed.code, 0) << printed.err;
+  folder.write("cell.toml", printed.out);
+  EXPECT_EQ(run_arris("recipe check --cell cell.toml", folder.path()).code, 0);
+  folder.write("cell.toml", "[frames]\n");
+  EXPECT_EQ(run_arris("recipe check --cell cell.toml", folder.path()).code, 3);
+}
+
+TEST(Program, ContoursListsDrawsAndChooses) {
+  const testing::TestFolder folder;
+  const std::string cad = "'" + (kExample / "plate.stl").string() + "'";
+  const Ran ran = run_arris("contours " + cad + " --accept 1 --out c.json --png c.png", folder.path());
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(ran.out.find("closed"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("accept"), std::string::npos) << ran.out;
+  EXPECT_EQ(testing::text_of(folder.path() / "c.png").substr(1, 3), "PNG");
+  EXPECT_NE(testing::text_of(folder.path() / "c.json").find("\"role\": \"accept\""), std::string::npos);
+  const Ran json = run_arris("contours " + cad + " --json", folder.path());
+  EXPECT_NE(json.out.find("\"length_mm\""), std::string::npos) << json.out;
+  const Ran none = run_arris("contours " + cad + " --accept 99 --out d.json", folder.path());
+  EXPECT_EQ(none.code, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "d.json"));
+}
+
+TEST(Program, InfoSaysWhatAFileHolds) {
+  const std::string scan = "'" + (kExample / "scan.ply").string() + "'";
+  const Ran ran = run_arris("info " + scan);
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  for (const char* part : {"format", "points", "sha256", "extent", "unit"})
+    EXPECT_NE(ran.out.find(std::string(part) + " "), std::string::npos) << ran.out;
+  const Ran json = run_arris("info --json " + scan);
+  EXPECT_NE(json.out.find("\"has_normals\": true"), std::string::npos) << json.out;
+}
+
+TEST(Program, ReaderThatLeavesEarlyIsNoError) {
+  const Ran ran = run_arris("recipe print | head -1 > /dev/null; exit ${PIPESTATUS:-0} #");
+  EXPECT_TRUE(ran.err.empty()) << ran.err;
+}
+
+}  // namespace
+}  // namespace arris
