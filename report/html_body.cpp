@@ -242,10 +242,9 @@ std::string worst_points_section(const RunRecord& record) {
                                             : tag("td", "outside", "out"))) +
             "\n";
   std::string html = tag("h2", "Worst points");
-  html += tag(
-      "p",
-      "The highest (H) and lowest (L) scan points, each at least a fifteenth of the scan's extent from the "
-      "next; x, y, z in mm. They belong to result (ii).");
+  html +=
+      tag("p", "The highest (H) and lowest (L) scan points, each at least " + mm(flag_spacing_mm(record), 1) +
+                   " mm from the next; x, y, z in mm. They belong to result (ii).");
   return html + tag("div", tag("table", rows), "scroll");
 }
 

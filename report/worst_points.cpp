@@ -43,16 +43,6 @@ void find_nominal(const TriangleMesh& cad, WorstPoint& point) {
   point.has_nominal = std::abs(std::sqrt(best2) - std::abs(point.deviation_mm)) < tolerance_mm;
 }
 
-double extent_mm(const PointCloud& cloud) {
-  Eigen::Vector3f low = Eigen::Vector3f::Constant(std::numeric_limits<float>::max());
-  Eigen::Vector3f high = -low;
-  for (const Eigen::Vector3f& p : cloud.points_mm) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  return cloud.empty() ? 0.0 : static_cast<double>((high - low).norm());
-}
-
 }  // namespace
 
 std::vector<std::size_t> spaced_extremes(std::span<const Eigen::Vector3f> points_mm,
@@ -82,9 +72,25 @@ std::vector<std::size_t> spaced_extremes(std::span<const Eigen::Vector3f> points
   return chosen;
 }
 
+double flag_spacing_mm(const RunRecord& record) {
+  const std::size_t size = std::min(record.cloud.size(), record.deviation_mm.size());
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double sum2 = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (!std::isfinite(record.deviation_mm[i])) continue;
+    const Eigen::Vector3d p = record.cloud.local_mm(i);
+    sum += p;
+    sum2 += p.squaredNorm();
+    count += 1.0;
+  }
+  if (count == 0.0) return 0.0;
+  const Eigen::Vector3d mean = sum / count;
+  return 0.2 * std::sqrt(std::max(0.0, sum2 / count - mean.squaredNorm()));
+}
+
 std::vector<WorstPoint> worst_points(const RunRecord& record, int count_each) {
   std::vector<WorstPoint> result;
-  const double spacing_mm = extent_mm(record.cloud) / 15.0;
+  const double spacing_mm = flag_spacing_mm(record);
   const RigidMotion cad_from_scan = record.alignment.scan_from_cad.inverse();
   for (const bool positive : {true, false}) {
     int number = 0;

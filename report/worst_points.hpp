@@ -28,7 +28,11 @@ struct WorstPoint {
                                                        std::span<const float> deviation_mm, int count,
                                                        double min_distance_mm, bool positive);
 
-/// The flags of a run: up to count_each above and below, spaced by a fifteenth of the scan's extent.
+/// Distance that the flags of a run keep: a fifth of the rms radius of the points with data, whatever the
+/// pose; mm.
+[[nodiscard]] double flag_spacing_mm(const RunRecord& record);
+
+/// The flags of a run: up to count_each above and below, flag_spacing_mm() apart.
 [[nodiscard]] std::vector<WorstPoint> worst_points(const RunRecord& record, int count_each = 5);
 
 }  // namespace arris::report
