@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <iostream>
-
 #include "acquisition/types/error.hpp"
 #include "tests/toolpath/programs.hpp"
 #include "toolpath/robot/compare.hpp"
@@ -41,7 +39,8 @@ TEST(RapidRoundTrip, TenThousandPosesComeBackWithinAThousandth) {
     worst_mm = std::max(worst_mm, (xyz_mm - move->work_from_tool.translation()).norm());
     worst_deg = std::max(worst_deg, turn_deg(move->work_from_tool.linear(), pose.quat_wxyz));
   }
-  std::cout << poses << " poses, worst " << worst_mm << " mm, " << worst_deg << " deg\n";
+  RecordProperty("worst_mm", std::to_string(worst_mm));
+  RecordProperty("worst_deg", std::to_string(worst_deg));
   EXPECT_EQ(poses, 10000);
   EXPECT_LE(worst_mm, 0.001);
   EXPECT_LE(worst_deg, 0.001);
@@ -116,8 +115,9 @@ TEST(RapidRoundTrip, EveryMutationIsCaught) {
     ++count[static_cast<int>(how)];
     EXPECT_NE(how, Caught::kNot) << "at " << at << ": " << text.substr(at > 30 ? at - 30 : 0, 60);
   }
-  std::cout << "caught by grammar " << count[0] << ", by comparison " << count[1] << ", by hash alone "
-            << count[2] << "\n";
+  RecordProperty("caught_by_grammar", count[0]);
+  RecordProperty("caught_by_comparison", count[1]);
+  RecordProperty("caught_by_hash_alone", count[2]);
   EXPECT_EQ(count[3], 0);
 }
 
