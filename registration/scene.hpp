@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "acquisition/geometry/nearest.hpp"
@@ -26,7 +27,7 @@ enum class SideKnown { kNo, kYes };
 struct ScanModel {
   std::vector<Eigen::Vector3d> points_mm;
   std::vector<Eigen::Vector3d> normals;    ///< unit, one a point; out of the material if side == kYes, else consistent
-  NearestPoints tree;                      ///< over points_mm
+  NearestPoints tree{std::span<const Eigen::Vector3d>{}};  ///< over points_mm
   std::vector<Contour> loops;              ///< found contours, oriented like the CAD's when side == kYes
   std::vector<Eigen::Vector3d> edge_mm;    ///< all points of all loops: where the scan stops
   std::vector<Eigen::Vector3d> edge_normals;

@@ -1,0 +1,181 @@
+#include "cli/cmd_run.hpp"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <thread>
+
+#include "acquisition/files/atomic_file.hpp"
+#include "acquisition/files/sha256.hpp"
+#include "acquisition/types/error.hpp"
+#include "cli/cell.hpp"
+#include "cli/console.hpp"
+#include "cli/contours_file.hpp"
+#include "cli/pipeline.hpp"
+#include "cli/run_folder.hpp"
+#include "cli/run_summary.hpp"
+#include "report/result_hash.hpp"
+#include "report/run_log.hpp"
+#include "report/verdict.hpp"
+
+namespace arris {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kStages = 7;
+constexpr const char* kMark = "result.json";
+
+std::string utc(std::time_t time) {
+  std::tm parts{};
+  gmtime_r(&time, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text;
+}
+
+/// The date that results carry: SOURCE_DATE_EPOCH, else the scan file's time, so that equal runs give equal bytes.
+std::string report_time(const fs::path& scan) {
+  if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH"); epoch != nullptr && *epoch != '\0')
+    return utc(static_cast<std::time_t>(std::strtoll(epoch, nullptr, 10)));
+  struct stat status {};
+  return utc(::stat(scan.c_str(), &status) == 0 ? status.st_mtime : std::time_t{0});
+}
+
+/// Stage times and the run's log, with the progress line.
+class Journal {
+ public:
+  explicit Journal(const RunArgs& args) {
+    times_.started = utc(std::time(nullptr));
+    times_.threads = args.threads > 0 ? args.threads : static_cast<int>(std::thread::hardware_concurrency());
+    times_.run_id = std::to_string(std::chrono::system_clock::now().time_since_epoch().count()) + "-" +
+                    std::to_string(::getpid());
+    times_.command_line = std::string("arris ") + (args.inspect_only ? "inspect " : "run ") + args.recipe.string() +
+                          " --scan " + args.scan.string();
+  }
+
+  void stage(const std::string& what) {
+    close_stage();
+    progress_.stage(++step_, kStages, what);
+    current_ = what;
+    stage_began_ = Clock::now();
+    log("info", what);
+  }
+
+  void log(const std::string& level, const std::string& text) {
+    log_.push_back({utc(std::time(nullptr)), seconds_since(began_), level, current_, text});
+  }
+
+  std::vector<NamedBytes> files(const std::string& result_hash) {
+    close_stage();
+    times_.finished = utc(std::time(nullptr));
+    times_.total_s = seconds_since(began_);
+    return {{"run.json", report::write_run_json(times_, result_hash)}, {"log.jsonl", report::write_log_jsonl(log_)}};
+  }
+
+  [[nodiscard]] double total_s() const { return seconds_since(began_); }
+
+ private:
+  static double seconds_since(Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+  }
+  void close_stage() {
+    if (!current_.empty()) times_.stage_s.emplace_back(current_, seconds_since(stage_began_));
+    current_.clear();
+  }
+
+  console::Progress progress_;
+  report::RunTimes times_;
+  std::vector<report::LogEntry> log_;
+  Clock::time_point began_ = Clock::now(), stage_began_ = began_;
+  std::string current_;
+  int step_ = 0;
+};
+
+std::optional<fs::path> cell_file(const RunArgs& args, const Recipe& recipe) {
+  if (args.cell) return args.cell;
+  if (!recipe.cell.empty()) return recipe.cell;
+  return std::nullopt;
+}
+
+std::vector<InputFile> hashed_inputs(const RunArgs& args, const Recipe& recipe) {
+  std::vector<InputFile> inputs;
+  const auto add = [&](const char* role, const fs::path& file) {
+    if (!file.empty()) inputs.push_back({role, file.filename().string(), sha256_file(file)});
+  };
+  add("scan", args.scan);
+  add("cad", recipe.part.cad);
+  add("recipe", args.recipe);
+  if (!args.inspect_only) add("path", recipe.toolpath.file);
+  add("contour", recipe.contour.file);
+  if (const auto cell = cell_file(args, recipe); cell && !args.inspect_only) add("cell", *cell);
+  if (args.contours) add("contours", *args.contours);
+  return inputs;
+}
+
+std::optional<ContourChoice> operators_choice(const RunArgs& args, const Recipe& recipe) {
+  if (args.contours) return read_contour_choice_for(*args.contours, sha256_file(args.scan));
+  if (recipe.contour.validation == "operator")
+    throw Error(Fault::kInput, {.what = "the recipe asks for contours that an operator has accepted",
+                                .needed = "--contours FILE",
+                                .next = "make it: arris contours " + args.scan.string() + " --accept .. --out contours.json"});
+  return std::nullopt;
+}
+
+fs::path default_out(const fs::path& scan) { return scan.stem().string() + ".arris"; }
+
+std::string why_no_program(const RunArgs& args, const RunRecord& record, bool has_cell) {
+  if (args.inspect_only) return "an inspection has no tool path";
+  if (!record.accepted()) return "refused: no corrected path and no robot program are handed out";
+  if (!has_cell) return "no cell is given ([cell] file in the recipe, or --cell): no robot program was written";
+  return "";
+}
+
+void fill(const AtomicFolder& folder, const std::vector<NamedBytes>& files) {
+  for (const auto& [name, bytes] : files) write_file(folder.path() / name, bytes);
+}
+
+}  // namespace
+
+int run_main_job(const RunArgs& args) {
+  Journal journal(args);
+  journal.stage("reading the recipe and the drawing");
+  const Recipe recipe = read_recipe(args.recipe);
+  std::optional<Cell> cell;
+  if (const auto file = cell_file(args, recipe); file && !args.inspect_only) cell = read_cell(*file);
+  AtomicFolder folder(args.out.value_or(default_out(args.scan)), args.force, kMark);
+  const Drawing drawing = read_drawing(recipe, !args.inspect_only, args.threads);
+
+  journal.stage("reading the scan");
+  const std::vector<InputFile> inputs = hashed_inputs(args, recipe);
+  Measurement measurement = read_measurement(recipe, args.scan, operators_choice(args, recipe), args.threads);
+
+  Processed processed = process(recipe, drawing, measurement, args.inspect_only, args.threads,
+                                [&](const std::string& what) { journal.stage(what); });
+  RunRecord& record = processed.record;
+  record.inputs = inputs;
+  record.report_time = report_time(args.scan);
+  record.result_hash = sha256_hex(report::canonical_text(record, processed.field_parameters));
+
+  journal.stage("writing the results");
+  std::vector<NamedBytes> programs;
+  record.program_note = why_no_program(args, record, cell.has_value());
+  if (record.program_note.empty()) {
+    programs = robot_programs(record, *cell, spin_from_name(recipe.toolpath.spin));
+    for (const auto& [name, bytes] : programs) record.program_note += (record.program_note.empty() ? "" : ", ") + name;
+  }
+  for (const std::string& reason : record.refusals) journal.log("warning", reason);
+  fill(folder, result_files(record));
+  fill(folder, programs);
+  fill(folder, journal.files(record.result_hash));
+  folder.commit();
+  print_summary(record, folder.target(), journal.total_s(), args.json);
+  return report::run_exit_code(record);
+}
+
+}  // namespace arris

@@ -1,0 +1,59 @@
+#include "cli/measurement.hpp"
+
+#include "acquisition/clean.hpp"
+#include "acquisition/files/read_scan.hpp"
+#include "acquisition/types/error.hpp"
+#include "cli/recipe_options.hpp"
+
+namespace arris {
+namespace {
+
+void use_choice(const ContourChoice& choice, const Eigen::Vector3d& offset_mm, ScanModel& model) {
+  model.loops.clear();
+  model.edge_mm.clear();
+  model.edge_normals.clear();
+  for (Contour loop : choice.accepted()) {
+    for (Eigen::Vector3d& p : loop.points_mm) p -= offset_mm;
+    model.edge_mm.insert(model.edge_mm.end(), loop.points_mm.begin(), loop.points_mm.end());
+    model.edge_normals.insert(model.edge_normals.end(), loop.normals.begin(), loop.normals.end());
+    model.loops.push_back(std::move(loop));
+  }
+}
+
+void note_loops(const PreparedScan& prepared, std::vector<std::string>& notes) {
+  notes.insert(notes.end(), prepared.contours.notes.begin(), prepared.contours.notes.end());
+  for (const FoundContour& found : prepared.contours.found)
+    if (!found.note.empty())
+      notes.push_back("scan contour " + std::to_string(found.contour.id) + ": " + found.note);
+  if (!prepared.contours.dropped.empty())
+    notes.push_back(std::to_string(prepared.contours.dropped.size()) +
+                    " short scan contours dropped as voids of the sampling");
+}
+
+}  // namespace
+
+Measurement read_measurement(const Recipe& recipe, const std::filesystem::path& scan_file,
+                             const std::optional<ContourChoice>& choice, int threads) {
+  Measurement measurement;
+  Scan scan = read_scan(scan_file, unit_mm(recipe.scan.units));
+  measurement.cloud = scan.cloud;
+  measurement.points_nonfinite = scan.dropped_nonfinite;
+  measurement.notes = scan.notes;
+  if (!scan.is_mesh()) {  // a mesh was cleaned by the scanner's own software, and its triangles need every vertex
+    Cleaned cleaned = clean(scan.cloud, clean_options(recipe, threads));
+    measurement.points_outlier = cleaned.dropped_outliers;
+    measurement.points_voxel = cleaned.dropped_by_voxel;
+    scan.cloud = std::move(cleaned.cloud);
+  }
+  PrepareOptions options;
+  options.contour = contour_options(recipe, threads);
+  options.threads = threads;
+  if (recipe.scan.seen_from.size() == 3)
+    options.seen_from_mm = Eigen::Vector3d(recipe.scan.seen_from[0], recipe.scan.seen_from[1], recipe.scan.seen_from[2]);
+  measurement.prepared = prepare_scan(scan, options);
+  note_loops(measurement.prepared, measurement.notes);
+  if (choice) use_choice(*choice, scan.cloud.offset_mm, measurement.prepared.model);
+  return measurement;
+}
+
+}  // namespace arris

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acquisition/types/point_cloud.hpp"
+#include "cli/contours_file.hpp"
+#include "cli/prepare.hpp"
+#include "cli/recipe.hpp"
+
+namespace arris {
+
+/// The scan as the run uses it.
+struct Measurement {
+  PointCloud cloud;  ///< as read, without points that are not finite; frame Scan about its offset
+  PreparedScan prepared;
+  std::size_t points_nonfinite = 0, points_outlier = 0, points_voxel = 0;
+  std::vector<std::string> notes;
+};
+
+/// Reads, cleans and prepares a scan; the operator's contours, when given, take the place of those found.
+///   throws  Error(kInput): the file, no point left, a choice of contours made for another file
+[[nodiscard]] Measurement read_measurement(const Recipe& recipe, const std::filesystem::path& scan_file,
+                                           const std::optional<ContourChoice>& choice, int threads);
+
+}  // namespace arris

@@ -1,0 +1,145 @@
+#include "cli/pipeline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "acquisition/types/error.hpp"
+#include "cli/prepare.hpp"
+#include "cli/recipe_options.hpp"
+#include "cli/results.hpp"
+#include "cli/version.hpp"
+#include "registration/deviation.hpp"
+#include "registration/registration.hpp"
+#include "toolpath/correct.hpp"
+
+namespace arris {
+namespace {
+
+constexpr double kDeviationReachMm = 25.0;
+
+/// What makes a start pose impossible because the input is wrong, not because the data are poor.
+void refuse_wrong_input(const CoarseAlignment& coarse, const Recipe& recipe) {
+  if (coarse.mirrored)
+    throw Error(Fault::kInput, {.what = "the scan is mirrored",
+                                .found = "its mirror image fits the part, the scan itself does not",
+                                .needed = "a right-handed scan of this part",
+                                .next = "export the scan again without mirroring, or take the drawing of the other hand"});
+  if (coarse.unit_ratio == 1.0) return;
+  char ratio[32];
+  std::snprintf(ratio, sizeof ratio, "%g", coarse.unit_ratio);
+  throw Error(Fault::kInput, {.what = "the scan is in another unit than the recipe says",
+                              .found = std::string("contours that fit the CAD when scaled by ") + ratio,
+                              .needed = "points in " + recipe.scan.units + " (scan.units)",
+                              .next = "set scan.units in the recipe, or export the scan again"});
+}
+
+void describe_inputs(const Recipe& recipe, const Drawing& drawing, const Measurement& measurement, RunRecord& record) {
+  record.part_number = recipe.part.number;
+  record.version = version();
+  record.state = recipe.part.state;
+  record.role = recipe.contour.role;
+  record.method = recipe.registration.method;
+  record.surface_profile_mm = recipe.tolerance.surface_profile_mm;
+  record.contour_profile_mm = recipe.tolerance.contour_profile_mm;
+  record.max_correction_mm = recipe.tolerance.max_correction_mm;
+  record.points_nonfinite = measurement.points_nonfinite;
+  record.points_outlier = measurement.points_outlier;
+  record.points_read = measurement.cloud.size() + measurement.points_nonfinite;
+  record.points_used = measurement.prepared.model.points_mm.size();
+  record.spacing_mm = measurement.prepared.model.spacing_mm;
+  record.noise_sigma_mm = measurement.prepared.model.noise_sigma_mm;
+  record.notes = drawing.notes;
+  record.notes.insert(record.notes.end(), measurement.notes.begin(), measurement.notes.end());
+  record.cloud = measurement.cloud;
+  record.cad = drawing.mesh;
+  record.cad_contours = drawing.accepted;
+  record.nominal_path = drawing.path;
+}
+
+RegistrationOptions local_options(const Recipe& recipe, const Eigen::Vector3d& offset_mm, int threads) {
+  RegistrationOptions options = registration_options(recipe, threads);
+  if (options.coarse.initial_scan_from_cad)  // the recipe speaks of the file's coordinates
+    options.coarse.initial_scan_from_cad->pretranslate(-offset_mm);
+  return options;
+}
+
+void describe_alignment(const Registration& found, const Measurement& measurement, AlignmentSummary& alignment) {
+  alignment.scan_from_cad = found.rigid.scan_from_cad;
+  if (!found.usable()) alignment.scan_from_cad = found.coarse.scan_from_cad;
+  alignment.scan_from_cad.pretranslate(measurement.cloud.offset_mm);
+  alignment.rms_mm = found.rigid.surface_rms_mm;
+  alignment.pairs = found.rigid.pairs;
+  alignment.runner_up_ratio = found.coarse.runner_up_ratio;
+  alignment.start = found.coarse.start;
+  alignment.side_decided_by = measurement.prepared.side_decided_by;
+  if (alignment.side_decided_by.empty())
+    alignment.side_decided_by = found.coarse.start == "initial pose" ? "initial pose" : "shape";
+  alignment.free_directions = found.free_directions;
+  double seen = 0.0, length = 0.0;
+  for (const ContourResult& contour : found.contours) {
+    seen += contour.edge.seen_ratio() * contour.motion.nominal().length_mm();
+    length += contour.motion.nominal().length_mm();
+  }
+  alignment.overlap_ratio = length > 0.0 ? seen / length : 0.0;
+}
+
+void describe_segments(const CadModel& cad, const Registration& found, RunRecord& record) {
+  for (std::size_t c = 0; c < found.contours.size(); ++c) {
+    const ContourMotion& motion = found.contours[c].motion;
+    for (std::size_t z = 0; z < motion.fits().size(); ++z) {
+      const Segment& segment = motion.subdivision().segments()[z];
+      const SegmentFit& fit = motion.fits()[z];
+      record.segments.push_back({cad.contours[c].contour().id, segment.begin_mm, segment.end_mm, fit.rms_mm,
+                                 fit.iterations, fit.pairs, fit.from_data, fit.stop});
+    }
+  }
+}
+
+/// Scan loops that run along an accepted contour, and those that were left out.
+void describe_loops(const Registration& found, const ScanModel& scan, RunRecord& record) {
+  for (std::size_t l = 0; l < scan.loops.size(); ++l) {
+    const bool used = l < found.loops.size() && found.loops[l].contour >= 0;
+    (used ? record.found_contours : record.dropped_contours).push_back(scan.loops[l]);
+  }
+}
+
+}  // namespace
+
+Processed process(const Recipe& recipe, const Drawing& drawing, Measurement& measurement, bool inspect_only, int threads,
+                  const StageHook& stage) {
+  Processed processed;
+  RunRecord& record = processed.record;
+  record.has_toolpath = !inspect_only;
+  describe_inputs(recipe, drawing, measurement, record);
+
+  stage("aligning");
+  const CadModel cad = prepare_cad(drawing.mesh, drawing.accepted);
+  ScanModel& scan = measurement.prepared.model;
+  const Registration found = register_part(cad, scan, local_options(recipe, measurement.cloud.offset_mm, threads));
+  refuse_wrong_input(found.coarse, recipe);
+  record.refusals = found.refusals;
+  describe_alignment(found, measurement, record.alignment);
+  describe_loops(found, scan, record);
+  if (!found.usable()) return processed;
+  record.stage_residual_mm = found.stage_residual_mm;
+  record.mean_strain_ratio = found.mean_strain_ratio;
+  describe_segments(cad, found, record);
+  processed.field_parameters = found.field->parameters();
+
+  if (!inspect_only) {
+    stage("correcting the path");
+    record.correction =
+        correct(drawing.path, cad.surface, *found.field, found.rigid.scan_from_cad, correct_options(recipe, threads));
+    record.refusals.insert(record.refusals.end(), record.correction.reasons.begin(), record.correction.reasons.end());
+    record.notes.insert(record.notes.end(), record.correction.notes.begin(), record.correction.notes.end());
+  }
+  stage("measuring deviations");
+  record.deviation_mm = signed_deviation_mm(cad.surface, found.rigid.scan_from_cad, measurement.cloud.points_mm,
+                                            kDeviationReachMm, threads);
+  judge_results(cad, found, record);
+  return processed;
+}
+
+}  // namespace arris
