@@ -13,16 +13,20 @@ namespace arris {
 namespace {
 
 constexpr int kGapNeighbours = 12;
-constexpr double kOffSurfaceSigmas = 4.0;   // points of the cut's wall and strays stand off their neighbours' plane
+constexpr double kOffSurfaceSigmas =
+    4.0;  // points of the cut's wall and strays stand off their neighbours' plane
 constexpr double kOffSurfaceSpacings = 0.06;
-constexpr double kJoinSpacings = 4.0;       // ends of broken chains no farther apart than this belong together,
-constexpr double kFarJoinSpacings = 12.0;   // or than this if both chains are long beside the gap
+constexpr double kJoinSpacings = 4.0;  // ends of broken chains no farther apart than this belong together,
+constexpr double kFarJoinSpacings = 12.0;  // or than this if both chains are long beside the gap
 constexpr double kFarJoinRatio = 0.1;
+constexpr std::size_t kFewestClosed = 8;    // a chain of fewer points is not closed
 constexpr double kShortestSpacings = 20.0;  // shorter loops are voids of the sampling
 constexpr std::size_t kChunk = 256;
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
-double positive_angle(double angle_rad) { return angle_rad < 0.0 ? angle_rad + kTwoPi : angle_rad; }
+double positive_angle(double angle_rad) {
+  return angle_rad < 0.0 ? angle_rad + kTwoPi : angle_rad;
+}
 
 /// Largest angle between neighbours, seen in the tangent plane.
 double largest_gap_rad(const Eigen::Vector3d& p, const Eigen::Matrix3d& frame,
@@ -40,55 +44,76 @@ double largest_gap_rad(const Eigen::Vector3d& p, const Eigen::Matrix3d& frame,
   return gap;
 }
 
-/// A direction in which the empty disc can touch a point, between two neighbours that stop it. With the material on
-/// the left of the walk, the walk arrives from `before` and leaves to `after`.
+/// A direction in which the empty disc can touch a point, between two neighbours that stop it. With the
+/// material on the left of the walk, the walk arrives from `before` and leaves to `after`.
 struct Touch {
   std::int32_t before = -1, after = -1;
   double from_rad = 0.0, to_rad = 0.0;  // directions of the disc's centre, counter-clockwise
-  double gap_rad = 0.0;
 };
 
-/// All free directions of a disc of radius r at a point: each neighbour at distance d blocks phi +- acos(d / 2r).
-std::vector<Touch> touches_of(const Eigen::Vector3d& p, const Eigen::Matrix3d& frame, double disc_mm,
-                              std::span<const Eigen::Vector3d> points_mm, const std::vector<Neighbour>& near) {
+/// All free directions of a disc of radius r at a point: each neighbour at distance d blocks phi +- acos(d /
+/// 2r).
+class TouchFinder {
+ public:
+  TouchFinder(std::span<const Eigen::Vector3d> points_mm, const std::vector<Eigen::Vector3d>& normals,
+              double disc_mm)
+      : points_mm_(points_mm), normals_(normals), disc_mm_(disc_mm) {}
+
+  std::vector<Touch> touches_of(std::size_t i, const std::vector<std::int32_t>& near) {
+    const Eigen::Matrix3d frame = frame_with_z(normals_[i]);
+    blocked_.clear();
+    for (const std::int32_t index : near) {
+      const Eigen::Vector3d d = points_mm_[static_cast<std::size_t>(index)] - points_mm_[i];
+      const double x = frame.col(0).dot(d), y = frame.col(1).dot(d);
+      const double distance_mm = std::hypot(x, y);
+      if (distance_mm <= 0.0 || distance_mm >= 2.0 * disc_mm_) continue;
+      const double half = std::acos(distance_mm / (2.0 * disc_mm_));
+      const double from = positive_angle(std::remainder(std::atan2(y, x) - half, kTwoPi));
+      blocked_.push_back({from, from + 2.0 * half, index});
+    }
+    std::sort(blocked_.begin(), blocked_.end(),
+              [](const Blocked& a, const Blocked& b) { return a.from < b.from; });
+    return free_directions();
+  }
+
+ private:
   struct Blocked {
     double from, to;
     std::int32_t index;
   };
-  std::vector<Blocked> blocked;
-  for (const Neighbour& neighbour : near) {
-    const Eigen::Vector3d d = points_mm[static_cast<std::size_t>(neighbour.index)] - p;
-    const double x = frame.col(0).dot(d), y = frame.col(1).dot(d);
-    const double distance_mm = std::hypot(x, y);
-    if (distance_mm <= 0.0 || distance_mm >= 2.0 * disc_mm) continue;
-    const double half = std::acos(distance_mm / (2.0 * disc_mm));
-    const double from = positive_angle(std::remainder(std::atan2(y, x) - half, kTwoPi));
-    blocked.push_back({from, from + 2.0 * half, neighbour.index});
+
+  /// Sweeps twice around, so that what is blocked across zero counts.
+  [[nodiscard]] std::vector<Touch> free_directions() const {
+    std::vector<Touch> touches;
+    if (blocked_.size() < 2) return touches;
+    double reach = -1.0;
+    std::int32_t holder = -1;
+    for (int turn = 0; turn < 2; ++turn)
+      for (const Blocked& b : blocked_) {
+        const double from = b.from + turn * kTwoPi, to = b.to + turn * kTwoPi;
+        if (turn == 1 && from > reach) touches.push_back({holder, b.index, reach, from});
+        if (to > reach) reach = to, holder = b.index;
+      }
+    return touches;
   }
-  std::sort(blocked.begin(), blocked.end(), [](const Blocked& a, const Blocked& b) { return a.from < b.from; });
-  std::vector<Touch> touches;
-  if (blocked.size() < 2) return touches;
-  // Sweep twice around, so that what is blocked across zero counts.
-  double reach = -1.0;
-  std::int32_t holder = -1;
-  for (int turn = 0; turn < 2; ++turn)
-    for (const Blocked& b : blocked) {
-      const double from = b.from + turn * kTwoPi, to = b.to + turn * kTwoPi;
-      if (holder >= 0 && turn == 1 && from > reach) touches.push_back({holder, b.index, reach, from, from - reach});
-      if (to > reach) reach = to, holder = b.index;
-    }
-  return touches;
-}
+
+  std::span<const Eigen::Vector3d> points_mm_;
+  const std::vector<Eigen::Vector3d>& normals_;
+  double disc_mm_;
+  std::vector<Blocked> blocked_;
+};
 
 struct Node {
   std::int32_t point = -1;
+  bool seed = false;  // an angle gap: a walk may start here
   Touch touch;
 };
 
 /// Rolls the disc from touch to touch.
 class Walk {
  public:
-  Walk(std::span<const Eigen::Vector3d> points_mm, const std::vector<Eigen::Vector3d>& normals, std::vector<Node> nodes)
+  Walk(std::span<const Eigen::Vector3d> points_mm, const std::vector<Eigen::Vector3d>& normals,
+       std::vector<Node> nodes)
       : points_mm_(points_mm), normals_(normals), nodes_(std::move(nodes)), first_(points_mm.size() + 1, 0) {
     for (const Node& node : nodes_) ++first_[static_cast<std::size_t>(node.point) + 1];
     for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
@@ -99,18 +124,21 @@ class Walk {
     for (std::size_t n = 0; n < nodes_.size(); ++n) next[n] = successor(nodes_[n]);
     std::vector<char> state(nodes_.size(), 0);  // 0 new, 1 on this walk, 2 done
     std::vector<FoundContour> found;
-    for (std::size_t n = 0; n < nodes_.size(); ++n) collect(static_cast<std::int32_t>(n), next, state, found);
+    for (std::size_t n = 0; n < nodes_.size(); ++n)
+      if (nodes_[n].seed) collect(static_cast<std::int32_t>(n), next, state, found);
     return found;
   }
 
  private:
-  /// At the next point, the touch that the disc arrives in: stopped by this point, or else the nearest direction.
+  /// At the next point, the touch that the disc arrives in: stopped by this point, or else the nearest
+  /// direction.
   std::int32_t successor(const Node& node) const {
     const std::size_t to = static_cast<std::size_t>(node.touch.after);
     std::int32_t best = -1;
     double best_mismatch = 1e300;
     for (std::size_t k = first_[to]; k < first_[to + 1]; ++k) {
-      const double mismatch = nodes_[k].touch.before == node.point ? -1.0 : direction_mismatch(node, nodes_[k]);
+      const double mismatch =
+          nodes_[k].touch.before == node.point ? -1.0 : direction_mismatch(node, nodes_[k]);
       if (mismatch < best_mismatch) best_mismatch = mismatch, best = static_cast<std::int32_t>(k);
     }
     return best_mismatch < 1.0 ? best : -1;
@@ -165,13 +193,9 @@ class Walk {
   std::vector<std::size_t> first_;  // nodes of point i: first_[i] .. first_[i + 1]
 };
 
-}  // namespace
-
-namespace {
-
 /// The 12 nearest of every point (without itself), kept because four steps look at them.
-std::vector<std::int32_t> neighbour_table(std::span<const Eigen::Vector3d> points_mm, const NearestPoints& tree,
-                                          int threads) {
+std::vector<std::int32_t> neighbour_table(std::span<const Eigen::Vector3d> points_mm,
+                                          const NearestPoints& tree, int threads) {
   std::vector<std::int32_t> table(points_mm.size() * kGapNeighbours, -1);
   parallel_for(points_mm.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
     std::vector<Neighbour> near;
@@ -223,97 +247,155 @@ Surface smooth_surface(std::span<const Eigen::Vector3d> points_mm, const std::ve
       surface.normals[i] = median_normal(i, near, planes);
       std::size_t count = 0;
       for (const std::int32_t j : near)
-        if (j >= 0) heights[count++] = surface.normals[i].dot(points_mm[static_cast<std::size_t>(j)] - points_mm[i]);
+        if (j >= 0)
+          heights[count++] = surface.normals[i].dot(points_mm[static_cast<std::size_t>(j)] - points_mm[i]);
       surface.on[i] = count > 0 && std::abs(median_in_place(heights, count)) < gate_mm ? 1 : 0;
     }
   });
   return surface;
 }
 
-std::vector<std::int32_t> gap_points(std::span<const Eigen::Vector3d> points_mm, const std::vector<std::int32_t>& table,
-                                     const Surface& surface, const ContourOptions& options) {
-  std::vector<char> is_boundary(points_mm.size(), 0);
-  parallel_for(points_mm.size(), kChunk, options.threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::int32_t> near;
-    std::vector<double> angles;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (!surface.on[i]) continue;
-      near.clear();
-      for (std::size_t k = 0; k < kGapNeighbours; ++k) {
-        const std::int32_t j = table[i * kGapNeighbours + k];
-        if (j >= 0 && surface.on[static_cast<std::size_t>(j)]) near.push_back(j);
-      }
-      const Eigen::Matrix3d frame = frame_with_z(surface.normals[i]);
-      is_boundary[i] = largest_gap_rad(points_mm[i], frame, points_mm, near, angles) > options.angle_gap_rad ? 1 : 0;
+/// Looks at one point's neighbours on the surface; scratch that one thread reuses.
+class Surroundings {
+ public:
+  Surroundings(std::span<const Eigen::Vector3d> points_mm, const NearestPoints& tree,
+               const std::vector<std::int32_t>& table, const Surface& surface, const ContourOptions& options,
+               double disc_mm)
+      : points_mm_(points_mm),
+        tree_(tree),
+        table_(table),
+        surface_(surface),
+        options_(options),
+        disc_mm_(disc_mm),
+        finder_(points_mm, surface.normals, disc_mm) {}
+
+  bool has_angle_gap(std::size_t i) {
+    take_nearest(i);
+    return largest_gap_rad(points_mm_[i], frame_with_z(surface_.normals[i]), points_mm_, near_, angles_) >
+           options_.angle_gap_rad;
+  }
+
+  /// The 12 nearest alone enclose most points; only the others need all neighbours that can touch the disc.
+  std::vector<Touch> touches_of(std::size_t i) {
+    take_nearest(i);
+    if (finder_.touches_of(i, near_).empty() && near_.size() > 1) return {};
+    tree_.within(points_mm_[i], 2.0 * disc_mm_, found_);
+    near_.clear();
+    for (const Neighbour& n : found_)
+      if (surface_.on[static_cast<std::size_t>(n.index)]) near_.push_back(n.index);
+    return finder_.touches_of(i, near_);
+  }
+
+ private:
+  void take_nearest(std::size_t i) {
+    near_.clear();
+    for (const std::int32_t j : std::span(&table_[i * kGapNeighbours], kGapNeighbours))
+      if (j >= 0 && surface_.on[static_cast<std::size_t>(j)]) near_.push_back(j);
+  }
+
+  std::span<const Eigen::Vector3d> points_mm_;
+  const NearestPoints& tree_;
+  const std::vector<std::int32_t>& table_;
+  const Surface& surface_;
+  const ContourOptions& options_;
+  double disc_mm_;
+  TouchFinder finder_;
+  std::vector<std::int32_t> near_;
+  std::vector<Neighbour> found_;
+  std::vector<double> angles_;
+};
+
+/// Links the ends of open chains to starts, the nearest pairs first, where allowed(end, start, mm apart).
+/// A chain, or a ring of chains, that meets itself becomes closed.
+std::vector<FoundContour> linked(std::vector<FoundContour> loops, double reach_mm, const auto& allowed) {
+  struct Link {
+    double apart_mm;
+    std::size_t end, start;
+  };
+  std::vector<FoundContour> result, open;
+  for (FoundContour& loop : loops) (loop.contour.closed ? result : open).push_back(std::move(loop));
+  std::vector<Link> links;
+  for (std::size_t e = 0; e < open.size(); ++e)
+    for (std::size_t s = 0; s < open.size(); ++s) {
+      const Contour &from = open[e].contour, &to = open[s].contour;
+      const double apart_mm = (to.points_mm.front() - from.points_mm.back()).norm();
+      const bool too_short = e == s && from.points_mm.size() < kFewestClosed;
+      if (apart_mm < reach_mm && !too_short && allowed(from, to, apart_mm)) links.push_back({apart_mm, e, s});
     }
-  });
-  std::vector<std::int32_t> found;
-  for (std::size_t i = 0; i < is_boundary.size(); ++i)
-    if (is_boundary[i]) found.push_back(static_cast<std::int32_t>(i));
-  return found;
+  std::stable_sort(links.begin(), links.end(),
+                   [](const Link& a, const Link& b) { return a.apart_mm < b.apart_mm; });
+  const std::size_t none = open.size();
+  std::vector<std::size_t> next(open.size(), none), previous(open.size(), none);
+  for (const Link& link : links)
+    if (next[link.end] == none && previous[link.start] == none)
+      next[link.end] = link.start, previous[link.start] = link.end;
+  std::vector<char> done(open.size(), 0);
+  const auto collect = [&](std::size_t first, bool closed) {
+    FoundContour chain = std::move(open[first]);
+    done[first] = 1;
+    for (std::size_t at = next[first]; at != none && !done[at]; at = next[at]) {
+      const Contour& tail = open[at].contour;
+      chain.contour.points_mm.insert(chain.contour.points_mm.end(), tail.points_mm.begin(),
+                                     tail.points_mm.end());
+      chain.contour.normals.insert(chain.contour.normals.end(), tail.normals.begin(), tail.normals.end());
+      done[at] = 1;
+    }
+    chain.contour.closed = closed;
+    result.push_back(std::move(chain));
+  };
+  for (std::size_t c = 0; c < open.size(); ++c)
+    if (previous[c] == none) collect(c, false);
+  for (std::size_t c = 0; c < open.size(); ++c)
+    if (!done[c]) collect(c, true);
+  return result;
 }
 
-/// Joins open chains end to start, the nearest pairs first, and closes a chain whose own ends are near.
+/// First what nearly touches, then long chains across a gap.
 std::vector<FoundContour> joined(std::vector<FoundContour> loops, double spacing_mm) {
-  const double join_mm = kFarJoinSpacings * spacing_mm;
-  std::vector<FoundContour> closed, open;
-  for (FoundContour& loop : loops) (loop.contour.closed ? closed : open).push_back(std::move(loop));
-  for (;;) {
-    double best_mm = join_mm;
-    std::size_t best_end = 0, best_start = 0;
-    for (std::size_t e = 0; e < open.size(); ++e)
-      for (std::size_t s = 0; s < open.size(); ++s) {
-        if (open[e].contour.points_mm.empty() || open[s].contour.points_mm.empty()) continue;
-        const double apart = (open[s].contour.points_mm.front() - open[e].contour.points_mm.back()).norm();
-        const bool too_short = e == s && open[e].contour.points_mm.size() < 8;
-        const bool too_far = apart > kJoinSpacings * spacing_mm &&
-                             apart > kFarJoinRatio * std::min(length_mm(open[e].contour), length_mm(open[s].contour));
-        if (apart < best_mm && !too_short && !too_far) best_mm = apart, best_end = e, best_start = s;
-      }
-    if (best_mm >= join_mm) break;
-    FoundContour& chain = open[best_end];
-    if (best_end == best_start) {
-      chain.contour.closed = true;
-      closed.push_back(std::move(chain));
-    } else {
-      const Contour& tail = open[best_start].contour;
-      chain.contour.points_mm.insert(chain.contour.points_mm.end(), tail.points_mm.begin(), tail.points_mm.end());
-      chain.contour.normals.insert(chain.contour.normals.end(), tail.normals.begin(), tail.normals.end());
-    }
-    const std::size_t gone = best_start;
-    open.erase(open.begin() + static_cast<std::ptrdiff_t>(gone));
-  }
-  closed.insert(closed.end(), std::make_move_iterator(open.begin()), std::make_move_iterator(open.end()));
-  return closed;
+  loops = linked(std::move(loops), kJoinSpacings * spacing_mm,
+                 [](const Contour&, const Contour&, double) { return true; });
+  return linked(std::move(loops), kFarJoinSpacings * spacing_mm,
+                [](const Contour& a, const Contour& b, double apart_mm) {
+                  return apart_mm <= kFarJoinRatio * std::min(length_mm(a), length_mm(b));
+                });
 }
 
 }  // namespace
 
-std::vector<std::int32_t> boundary_points(std::span<const Eigen::Vector3d> points_mm, const NearestPoints& tree,
-                                          const LocalPlanes& planes, const ContourOptions& options) {
+std::vector<std::int32_t> boundary_points(std::span<const Eigen::Vector3d> points_mm,
+                                          const NearestPoints& tree, const LocalPlanes& planes,
+                                          const ContourOptions& options) {
   const std::vector<std::int32_t> table = neighbour_table(points_mm, tree, options.threads);
-  return gap_points(points_mm, table, smooth_surface(points_mm, table, planes, options.threads), options);
+  const Surface surface = smooth_surface(points_mm, table, planes, options.threads);
+  std::vector<char> has_gap(points_mm.size(), 0);
+  parallel_for(points_mm.size(), kChunk, options.threads, [&](std::size_t begin, std::size_t end) {
+    Surroundings around(points_mm, tree, table, surface, options, 0.0);
+    for (std::size_t i = begin; i < end; ++i) has_gap[i] = surface.on[i] && around.has_angle_gap(i) ? 1 : 0;
+  });
+  std::vector<std::int32_t> found;
+  for (std::size_t i = 0; i < has_gap.size(); ++i)
+    if (has_gap[i]) found.push_back(static_cast<std::int32_t>(i));
+  return found;
 }
 
 ContourSet cloud_contours(std::span<const Eigen::Vector3d> points_mm, const NearestPoints& tree,
                           const LocalPlanes& planes, const ContourOptions& options) {
   const std::vector<std::int32_t> table = neighbour_table(points_mm, tree, options.threads);
   const Surface surface = smooth_surface(points_mm, table, planes, options.threads);
-  const std::vector<std::int32_t> candidates = gap_points(points_mm, table, surface, options);
   const double disc_mm = options.disc_spacings_ratio * planes.spacing_median_mm;
-  std::vector<std::vector<Touch>> touches(candidates.size());
-  parallel_for(candidates.size(), kChunk, options.threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<Neighbour> near;
-    for (std::size_t c = begin; c < end; ++c) {
-      const std::size_t i = static_cast<std::size_t>(candidates[c]);
-      tree.within(points_mm[i], 2.0 * disc_mm, near);
-      std::erase_if(near, [&](const Neighbour& n) { return !surface.on[static_cast<std::size_t>(n.index)]; });
-      touches[c] = touches_of(points_mm[i], frame_with_z(surface.normals[i]), disc_mm, points_mm, near);
+  std::vector<std::vector<Node>> nodes_of(points_mm.size());
+  parallel_for(points_mm.size(), kChunk, options.threads, [&](std::size_t begin, std::size_t end) {
+    Surroundings around(points_mm, tree, table, surface, options, disc_mm);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!surface.on[i]) continue;
+      const std::vector<Touch> touches = around.touches_of(i);
+      const bool seed = !touches.empty() && around.has_angle_gap(i);
+      for (const Touch& touch : touches) nodes_of[i].push_back({static_cast<std::int32_t>(i), seed, touch});
     }
   });
   std::vector<Node> nodes;
-  for (std::size_t c = 0; c < candidates.size(); ++c)
-    for (const Touch& touch : touches[c]) nodes.push_back({candidates[c], touch});
+  for (const std::vector<Node>& of_point : nodes_of)
+    nodes.insert(nodes.end(), of_point.begin(), of_point.end());
   const double shortest_mm =
       options.min_length_mm > 0.0 ? options.min_length_mm : kShortestSpacings * planes.spacing_median_mm;
   std::vector<FoundContour> loops = Walk(points_mm, surface.normals, std::move(nodes)).loops();

@@ -14,11 +14,15 @@ namespace arris {
 
 /// Options of the contour search; recipe keys of [contour].
 struct ContourOptions {
-  double sharp_edge_rad = 0.52;       ///< a closed mesh: an edge whose faces turn more is a contour edge (30 degrees)
-  double angle_gap_rad = 1.5707963;   ///< a cloud: a point whose neighbours leave a larger gap lies on the boundary
-  double disc_spacings_ratio = 2.0;   ///< a cloud: radius of the empty disc that rolls along the edge, in spacings
-  double outsized_edge_ratio = 5.0;   ///< a mesh scan: a triangle edge longer than this times the median fills a hole
-  double min_length_mm = 0.0;         ///< shorter loops are dropped; 0: twenty point spacings
+  double sharp_edge_rad =
+      0.52;  ///< a closed mesh: an edge whose faces turn more is a contour edge (30 degrees)
+  double angle_gap_rad =
+      1.5707963;  ///< a cloud: a loop begins at a point whose neighbours leave a larger gap
+  double disc_spacings_ratio =
+      2.0;  ///< a cloud: radius of the empty disc that rolls along the edge, in median spacings
+  double outsized_edge_ratio =
+      5.0;  ///< a mesh scan: a triangle edge longer than this times the median fills a hole
+  double min_length_mm = 0.0;  ///< shorter loops are dropped; 0: twenty point spacings
   int threads = 0;
 };
 
@@ -27,8 +31,8 @@ struct FoundContour {
   Contour contour;
   double length_mm = 0.0;
   double min_bend_radius_mm = 0.0;
-  double closing_gap_mm = 0.0;     ///< distance between the ends of an open chain; 0 when closed
-  std::string note;                ///< "filled hole: 214 triangles without a scan point's density", "outer", ...
+  double closing_gap_mm = 0.0;  ///< distance between the ends of an open chain; 0 when closed
+  std::string note;             ///< "filled hole: 214 triangles without a scan point's density", "outer", ...
 };
 
 /// Loops found, longest first, ids from 1; dropped ones apart, with the reason in `note`.
@@ -38,16 +42,17 @@ struct ContourSet {
   std::vector<std::string> notes;  ///< oddities of the mesh, filled holes
 };
 
-/// Contours of a mesh. An open mesh: its one-face edges, chained to loops around the faces' fans, so that loops which
-/// touch at a vertex stay apart. A closed mesh: smooth regions are flooded up to the edges sharper than
-/// sharp_edge_rad, and each region's border is chained the same way; of two regions that share a whole loop the
-/// larger keeps it (a hole's rim belongs to the face, not to its wall).
-/// Vertices must be welded (read_mesh does). Normals: the faces of the region beside the edge. Orientation: material
-/// on the left, seen from the air side. Edges with more than two faces are skipped and named in `notes`.
+/// Contours of a mesh. An open mesh: its one-face edges, chained to loops around the faces' fans, so that
+/// loops which touch at a vertex stay apart. A closed mesh: smooth regions are flooded up to the edges
+/// sharper than sharp_edge_rad, and each region's border is chained the same way; of two regions that share a
+/// whole loop the larger keeps it (a hole's rim belongs to the face, not to its wall). Vertices must be
+/// welded (read_mesh does). Normals: the faces of the region beside the edge. Orientation: material on the
+/// left, seen from the air side. Edges with more than two faces are skipped and named in `notes`.
 [[nodiscard]] ContourSet mesh_contours(const TriangleMesh& mesh, const ContourOptions& options);
 
-/// Contours of a scan that is a mesh: as an open mesh, after the triangles that a scanner's software stretched over
-/// holes are taken out (an edge longer than outsized_edge_ratio times the median); their rims say so in `note`.
+/// Contours of a scan that is a mesh: as an open mesh, after the triangles that a scanner's software
+/// stretched over holes are taken out (an edge longer than outsized_edge_ratio times the median); their rims
+/// say so in `note`.
 [[nodiscard]] ContourSet scan_mesh_contours(const Scan& scan, const ContourOptions& options);
 
 /// Indices of the points whose 12 nearest leave an angle gap of more than angle_gap_rad in the tangent plane.
@@ -55,9 +60,11 @@ struct ContourSet {
                                                         const NearestPoints& tree, const LocalPlanes& planes,
                                                         const ContourOptions& options);
 
-/// Contours of a cloud: an empty disc of disc_spacings_ratio local spacings rolls along the boundary points in the
-/// tangent planes and touches the loop's points in order (the border of a local alpha shape: Edelsbrunner et al.,
-/// IEEE Trans. Inf. Theory 29(4), 1983). Loops shorter than min_length_mm are voids of the sampling and dropped.
+/// Contours of a cloud: an empty disc of disc_spacings_ratio median spacings rolls around the points in their
+/// tangent planes and touches each loop's points in order (the border of a local alpha shape: Edelsbrunner et
+/// al., IEEE Trans. Inf. Theory 29(4), 1983). A loop without an angle gap (boundary_points) is none. Points
+/// that stand off their neighbours' plane (strays, the wall of a cut) are left out. Chains that break are
+/// joined where their ends are near. Loops shorter than min_length_mm are voids of the sampling and dropped.
 /// `planes.normals` must be oriented alike; out of the material for the material to lie on the left.
 /// Cost O(N log N); the loops do not depend on the order of the points beyond where they start.
 [[nodiscard]] ContourSet cloud_contours(std::span<const Eigen::Vector3d> points_mm, const NearestPoints& tree,
