@@ -24,7 +24,7 @@ ReadMove& move_at(Reading& read, std::size_t i) {
 }
 
 struct Meddled {
-  std::function<void(Reading&)> with;
+  void (*with)(Reading&);
   const char* says;
 };
 class CompareSays : public testing::TestWithParam<Meddled> {};
@@ -39,55 +39,47 @@ TEST_P(CompareSays, WhatDiffers) {
 }
 
 // Events: 0 to the clearance, 1 on, 2 wait, 3 to 15 the rows and the first again, 16 up, 17 off.
-INSTANTIATE_TEST_SUITE_P(
-    Compare, CompareSays,
-    testing::Values(
-        Meddled{[](Reading& r) { r.name = "Other"; }, "the program is called Other"},
-        Meddled{[](Reading& r) { r.result_hash = "0"; }, "another result_hash"},
-        Meddled{[](Reading& r) { r.hashed_text += " "; }, "the body's hash"},
-        Meddled{[](Reading& r) { r.body_sha256[5] ^= 1; }, "the body's hash"},
-        Meddled{[](Reading& r) { r.configurations_off = false; }, "configurations"},
-        Meddled{[](Reading& r) { r.longest_procedure = 5001; }, "too many moves"},
-        Meddled{[](Reading& r) { r.events.pop_back(); }, "17 events instead of 18"},
-        Meddled{[](Reading& r) { move_at(r, 4).pose.xyz_mm[2] += 0.0012; },
-                "event 5: the pose is off by 0.0012"},
-        Meddled{[](Reading& r) { move_at(r, 4).pose.xyz_mm[0] = std::nan(""); },
-                "event 5: the pose is off by nan"},
-        Meddled{[](Reading& r) { move_at(r, 5).pose.quat_wxyz[0] += 2e-5; },
-                "event 6: the pose is turned by 0.002"},
-        Meddled{[](Reading& r) { move_at(r, 0).joint = false; }, "event 1: another kind of move"},
-        Meddled{[](Reading& r) { move_at(r, 6).speed_mm_s = 20.01; }, "event 7: another speed"},
-        Meddled{[](Reading& r) { move_at(r, 6).turn_deg_s = 500.0; }, "event 7: another turning speed"},
-        Meddled{[](Reading& r) { move_at(r, 6).zone_mm = 0.0; }, "event 7: another zone"},
-        Meddled{[](Reading& r) { move_at(r, 3).zone_mm = 1e-9; }, "event 4: another zone"},
-        Meddled{[](Reading& r) { move_at(r, 6).tool = "tool0"; }, "event 7: another tool"},
-        Meddled{[](Reading& r) { move_at(r, 6).work = "wobj0"; }, "event 7: another work object"},
-        Meddled{[](Reading& r) {
-                  r.events[6] = ReadSet{"doSpindle", 1};
-                },
-                "event 7: no move"},
-        Meddled{[](Reading& r) { std::get<ReadSet>(r.events[1]).value = 0; }, "event 2: not doSpindle on"},
-        Meddled{[](Reading& r) { std::get<ReadSet>(r.events[17]).output = "doX"; },
-                "event 18: not doSpindle off"},
-        Meddled{[](Reading& r) { std::get<ReadWait>(r.events[2]).input = "diX"; }, "event 3: no wait for"},
-        Meddled{[](Reading& r) { std::get<ReadWait>(r.events[2]).value = 0; }, "event 3: no wait for"},
-        Meddled{[](Reading& r) { std::get<ReadWait>(r.events[2]).timeout_s = 50.0; }, "another time to wait"},
-        Meddled{[](Reading& r) { std::get<ReadWait>(r.events[2]).on_timeout.clear(); },
-                "does not switch off and end"},
-        Meddled{[](Reading& r) { std::get<ReadWait>(r.events[2]).on_timeout[0].value = 1; },
-                "switch off and end"},
-        Meddled{[](Reading& r) { std::get<ReadWait>(r.events[2]).ends_on_timeout = false; },
-                "switch off and end"},
-        Meddled{[](Reading& r) { r.on_error.clear(); }, "the error handler"},
-        Meddled{[](Reading& r) { r.on_error[0].value = 1; }, "the error handler"},
-        Meddled{[](Reading& r) { r.on_error[0].output = "doX"; }, "the error handler"},
-        Meddled{[](Reading& r) { r.tools.clear(); }, "another set of tools"},
-        Meddled{[](Reading& r) { r.tools["tSpindle"].mass_kg = 2.0; }, "another tool mass"},
-        Meddled{[](Reading& r) { r.tools["tSpindle"].centre_mm[1] = 1.0; }, "another centre of gravity"},
-        Meddled{[](Reading& r) { r.tools["tSpindle"].flange_from_tool.xyz_mm[2] += 1.0; },
-                "the tool off by 1.0"},
-        Meddled{[](Reading& r) { r.works["wSecond"] = {}; }, "another set of work objects"},
-        Meddled{[](Reading& r) { r.works["wPart"].xyz_mm[0] += 1.0; }, "the work object off by 1.0"}));
+const Meddled kMeddled[] = {
+    {[](Reading& r) { r.name = "Other"; }, "the program is called Other"},
+    {[](Reading& r) { r.result_hash = "0"; }, "another result_hash"},
+    {[](Reading& r) { r.hashed_text += " "; }, "the body's hash"},
+    {[](Reading& r) { r.body_sha256[5] ^= 1; }, "the body's hash"},
+    {[](Reading& r) { r.configurations_off = false; }, "configurations"},
+    {[](Reading& r) { r.longest_procedure = 5001; }, "too many moves"},
+    {[](Reading& r) { r.events.pop_back(); }, "17 events instead of 18"},
+    {[](Reading& r) { move_at(r, 4).pose.xyz_mm[2] += 0.0012; }, "event 5: the pose is off by 0.0012"},
+    {[](Reading& r) { move_at(r, 4).pose.xyz_mm[0] = std::nan(""); }, "event 5: the pose is off by nan"},
+    {[](Reading& r) { move_at(r, 5).pose.quat_wxyz[0] += 2e-5; }, "event 6: the pose is turned by 0.002"},
+    {[](Reading& r) { move_at(r, 0).joint = false; }, "event 1: another kind of move"},
+    {[](Reading& r) { move_at(r, 6).speed_mm_s = 20.01; }, "event 7: another speed"},
+    {[](Reading& r) { move_at(r, 6).turn_deg_s = 500.0; }, "event 7: another turning speed"},
+    {[](Reading& r) { move_at(r, 6).zone_mm = 0.0; }, "event 7: another zone"},
+    {[](Reading& r) { move_at(r, 3).zone_mm = 1e-9; }, "event 4: another zone"},
+    {[](Reading& r) { move_at(r, 6).tool = "tool0"; }, "event 7: another tool"},
+    {[](Reading& r) { move_at(r, 6).work = "wobj0"; }, "event 7: another work object"},
+    {[](Reading& r) {
+       r.events[6] = ReadSet{"doSpindle", 1};
+     },
+     "event 7: no move"},
+    {[](Reading& r) { std::get<ReadSet>(r.events[1]).value = 0; }, "event 2: not doSpindle on"},
+    {[](Reading& r) { std::get<ReadSet>(r.events[17]).output = "doX"; }, "event 18: not doSpindle off"},
+    {[](Reading& r) { std::get<ReadWait>(r.events[2]).input = "diX"; }, "event 3: no wait for"},
+    {[](Reading& r) { std::get<ReadWait>(r.events[2]).value = 0; }, "event 3: no wait for"},
+    {[](Reading& r) { std::get<ReadWait>(r.events[2]).timeout_s = 50.0; }, "another time to wait"},
+    {[](Reading& r) { std::get<ReadWait>(r.events[2]).on_timeout.clear(); }, "does not switch off and end"},
+    {[](Reading& r) { std::get<ReadWait>(r.events[2]).on_timeout[0].value = 1; }, "switch off and end"},
+    {[](Reading& r) { std::get<ReadWait>(r.events[2]).ends_on_timeout = false; }, "switch off and end"},
+    {[](Reading& r) { r.on_error.clear(); }, "the error handler"},
+    {[](Reading& r) { r.on_error[0].value = 1; }, "the error handler"},
+    {[](Reading& r) { r.on_error[0].output = "doX"; }, "the error handler"},
+    {[](Reading& r) { r.tools.clear(); }, "another set of tools"},
+    {[](Reading& r) { r.tools["tSpindle"].mass_kg = 2.0; }, "another tool mass"},
+    {[](Reading& r) { r.tools["tSpindle"].centre_mm[1] = 1.0; }, "another centre of gravity"},
+    {[](Reading& r) { r.tools["tSpindle"].flange_from_tool.xyz_mm[2] += 1.0; }, "the tool off by 1.0"},
+    {[](Reading& r) { r.works["wSecond"] = {}; }, "another set of work objects"},
+    {[](Reading& r) { r.works["wPart"].xyz_mm[0] += 1.0; }, "the work object off by 1.0"}};
+
+INSTANTIATE_TEST_SUITE_P(Compare, CompareSays, testing::ValuesIn(kMeddled));
 
 TEST(Compare, OppositeQuaternionsAreTheSameTurn) {
   Reading read = read_back();

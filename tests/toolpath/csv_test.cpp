@@ -81,32 +81,35 @@ TEST_P(PathCsvRefuses, WithTheLineAndTheReason) {
   EXPECT_NE(line.find(GetParam().says), std::string::npos) << line;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    PathCsv, PathCsvRefuses,
-    testing::Values(
-        Refused{"", "the tool path file is empty (p.csv)"}, Refused{" \n\n", "empty"},
-        Refused{"x,y,z,nx,ny,nz\n", "the tool path has no rows"}, Refused{"# only\n", "no rows"},
-        Refused{"x,y,z,nx,ny,nz,fed_mm_s\n", "p.csv, line 1): found 'fed_mm_s'"},
-        Refused{"x,y,z,nx,ny,nz,fed_mm_s\n", "did you mean 'feed_mm_s'?"},
-        Refused{"x,y,z,nx,ny\n", "no column 'nz'"}, Refused{"x,y,z,nx,ny,nz,x\n", "a column stands twice"},
-        Refused{"x;y;z;nx;ny;nz\n", "not separated by commas"},
-        Refused{"x,y,z,nx,ny,nz\n1,2,3,0,0\n", "line 2): found 5; needed 6"},
-        Refused{"x,y,z,nx,ny,nz\n1,2,3,0,0,1\n1,2,abc,0,0,1\n", "column z (p.csv, line 3): found 'abc'"},
-        Refused{"x,y,z,nx,ny,nz\n1,2,nan,0,0,1\n", "not a finite number in column z"},
-        Refused{"x,y,z,nx,ny,nz\n1,2,1e999,0,0,1\n", "column z"},
-        Refused{"x,y,z,nx,ny,nz\n1,2,inf,0,0,1\n", "not a finite number"},
-        Refused{"x,y,z,nx,ny,nz\n1,2,3,0,,1\n", "not a number in column ny"},
-        Refused{"x,y,z,nx,ny,nz\n1,2,3,0,0,1.02\n", "not a unit vector"},
-        Refused{"x,y,z,nx,ny,nz\n1,2,3,0,0,0\n", "length 0.0"},
-        Refused{"x,y,z,nx,ny,nz,path\n1,2,3,0,0,1,1.5\n", "not a whole number in column path"},
-        Refused{"x,y,z,nx,ny,nz,path\n1,2,3,0,0,1,1\n1,2,3,0,0,1,2\n1,2,3,0,0,1,1\n",
-                "polyline 1 is taken up again"},
-        Refused{"x,y,z,nx,ny,nz,closed\n1,2,3,0,0,1,2\n", "0 or 1"},
-        Refused{"x,y,z,nx,ny,nz,closed\n1,2,3,0,0,1,1\n1,2,3,0,0,1,0\n", "closed changes within polyline 1"},
-        Refused{"x,y,z,nx,ny,nz,feed_mm_s\n1,2,3,0,0,1,-2\n", "a negative feed"},
-        Refused{"1,2,3,0,0\n", "without a header"}, Refused{"hello\n", "unknown column"},
-        Refused{"# result_hash = ab\nx,y,z,nx,ny,nz\n", "corrected already"},
-        Refused{"x,y,z,nx,ny,nz,shift_mm\n", "corrected already"}));
+const Refused kRefused[] = {
+    {"", "the tool path file is empty (p.csv)"},
+    {" \n\n", "empty"},
+    {"x,y,z,nx,ny,nz\n", "the tool path has no rows"},
+    {"# only\n", "no rows"},
+    {"x,y,z,nx,ny,nz,fed_mm_s\n", "p.csv, line 1): found 'fed_mm_s'"},
+    {"x,y,z,nx,ny,nz,fed_mm_s\n", "did you mean 'feed_mm_s'?"},
+    {"x,y,z,nx,ny\n", "no column 'nz'"},
+    {"x,y,z,nx,ny,nz,x\n", "a column stands twice"},
+    {"x;y;z;nx;ny;nz\n", "not separated by commas"},
+    {"x,y,z,nx,ny,nz\n1,2,3,0,0\n", "line 2): found 5; needed 6"},
+    {"x,y,z,nx,ny,nz\n1,2,3,0,0,1\n1,2,abc,0,0,1\n", "column z (p.csv, line 3): found 'abc'"},
+    {"x,y,z,nx,ny,nz\n1,2,nan,0,0,1\n", "not a finite number in column z"},
+    {"x,y,z,nx,ny,nz\n1,2,1e999,0,0,1\n", "column z"},
+    {"x,y,z,nx,ny,nz\n1,2,inf,0,0,1\n", "not a finite number"},
+    {"x,y,z,nx,ny,nz\n1,2,3,0,,1\n", "not a number in column ny"},
+    {"x,y,z,nx,ny,nz\n1,2,3,0,0,1.02\n", "not a unit vector"},
+    {"x,y,z,nx,ny,nz\n1,2,3,0,0,0\n", "length 0.0"},
+    {"x,y,z,nx,ny,nz,path\n1,2,3,0,0,1,1.5\n", "not a whole number in column path"},
+    {"x,y,z,nx,ny,nz,path\n1,2,3,0,0,1,1\n1,2,3,0,0,1,2\n1,2,3,0,0,1,1\n", "polyline 1 is taken up again"},
+    {"x,y,z,nx,ny,nz,closed\n1,2,3,0,0,1,2\n", "0 or 1"},
+    {"x,y,z,nx,ny,nz,closed\n1,2,3,0,0,1,1\n1,2,3,0,0,1,0\n", "closed changes within polyline 1"},
+    {"x,y,z,nx,ny,nz,feed_mm_s\n1,2,3,0,0,1,-2\n", "a negative feed"},
+    {"1,2,3,0,0\n", "without a header"},
+    {"hello\n", "unknown column"},
+    {"# result_hash = ab\nx,y,z,nx,ny,nz\n", "corrected already"},
+    {"x,y,z,nx,ny,nz,shift_mm\n", "corrected already"}};
+
+INSTANTIATE_TEST_SUITE_P(PathCsv, PathCsvRefuses, testing::ValuesIn(kRefused));
 
 Correction carried(const ToolPath& nominal) {
   Correction correction;

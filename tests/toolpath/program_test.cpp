@@ -114,7 +114,7 @@ TEST(Program, IsNotMadeOfARefusedCorrectionNorBeyondReach) {
 }
 
 struct BadCell {
-  std::function<void(Cell&)> spoil;
+  void (*spoil)(Cell&);
   const char* says;
 };
 class CellRefuses : public testing::TestWithParam<BadCell> {};
@@ -132,26 +132,26 @@ TEST_P(CellRefuses, NamingFieldValueAndBound) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Program, CellRefuses,
-    testing::Values(
-        BadCell{[](Cell& c) { c.tool_mass_kg = 0.0; }, "cell.tool_mass_kg = 0.000000, need > 0"},
-        BadCell{[](Cell& c) { c.cut_speed_mm_s = std::nan(""); }, "cell.cut_speed_mm_s = not finite"},
-        BadCell{[](Cell& c) { c.zone_mm = -1.0; }, "cell.zone_mm"},
-        BadCell{[](Cell& c) { c.dry_run_speed_ratio = 1.5; }, "cell.dry_run_speed_ratio"},
-        BadCell{[](Cell& c) { c.dry_run_offset_mm = 0.0; }, "cell.dry_run_offset_mm"},
-        BadCell{[](Cell& c) { c.clearance_mm = 0.0; }, "cell.clearance_mm"},
-        BadCell{[](Cell& c) { c.ready_timeout_s = 0.0; }, "cell.ready_timeout_s"},
-        BadCell{[](Cell& c) { c.max_points = 1; }, "cell.max_points"},
-        BadCell{[](Cell& c) { c.robot_from_scan.linear() *= 2.0; }, "cell.robot_from_scan = not a rotation"},
-        BadCell{[](Cell& c) { c.tool_name = ""; }, "cell.tool_name"},
-        BadCell{[](Cell& c) { c.tool_name = "t\xC3\xB6ol"; }, "cell.tool_name"},
-        BadCell{[](Cell& c) { c.work_name = "MoveL"; }, "that RAPID and the program leave free"},
-        BadCell{[](Cell& c) { c.work_name = "P12"; }, "that RAPID and the program leave free"},
-        BadCell{[](Cell& c) { c.work_name = "1part"; }, "need a RAPID name"},
-        BadCell{[](Cell& c) { c.work_name = "TSPINDLE"; }, "that no other field has"},
-        BadCell{[](Cell& c) { c.tool_name = "tool0"; }, "leave free"},
-        BadCell{[](Cell& c) { c.spindle_output.clear(); }, "cell.spindle_ready"}));
+const BadCell kBadCells[] = {
+    {[](Cell& c) { c.tool_mass_kg = 0.0; }, "cell.tool_mass_kg = 0.000000, need > 0"},
+    {[](Cell& c) { c.cut_speed_mm_s = std::nan(""); }, "cell.cut_speed_mm_s = not finite"},
+    {[](Cell& c) { c.zone_mm = -1.0; }, "cell.zone_mm"},
+    {[](Cell& c) { c.dry_run_speed_ratio = 1.5; }, "cell.dry_run_speed_ratio"},
+    {[](Cell& c) { c.dry_run_offset_mm = 0.0; }, "cell.dry_run_offset_mm"},
+    {[](Cell& c) { c.clearance_mm = 0.0; }, "cell.clearance_mm"},
+    {[](Cell& c) { c.ready_timeout_s = 0.0; }, "cell.ready_timeout_s"},
+    {[](Cell& c) { c.max_points = 1; }, "cell.max_points"},
+    {[](Cell& c) { c.robot_from_scan.linear() *= 2.0; }, "cell.robot_from_scan = not a rotation"},
+    {[](Cell& c) { c.tool_name = ""; }, "cell.tool_name"},
+    {[](Cell& c) { c.tool_name = "t\xC3\xB6ol"; }, "cell.tool_name"},
+    {[](Cell& c) { c.work_name = "MoveL"; }, "that RAPID and the program leave free"},
+    {[](Cell& c) { c.work_name = "P12"; }, "that RAPID and the program leave free"},
+    {[](Cell& c) { c.work_name = "1part"; }, "need a RAPID name"},
+    {[](Cell& c) { c.work_name = "TSPINDLE"; }, "that no other field has"},
+    {[](Cell& c) { c.tool_name = "tool0"; }, "leave free"},
+    {[](Cell& c) { c.spindle_output.clear(); }, "cell.spindle_ready"}};
+
+INSTANTIATE_TEST_SUITE_P(Program, CellRefuses, testing::ValuesIn(kBadCells));
 
 TEST(Rapid, WritesTheSameBytesAndHashesItself) {
   const Program program = make_program(ring(12, 60.0, true), kNoOffset, some_cell(), {});

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "acquisition/types/error.hpp"
 #include "tests/toolpath/programs.hpp"
 #include "toolpath/robot/compare.hpp"
