@@ -142,6 +142,11 @@ void Canvas::text(double x, double y, const std::string& text, const TextStyle& 
   const double width = style.anchor == Anchor::kLeft ? 0.0 : text_width(text, style);
   const double shift =
       style.anchor == Anchor::kCentre ? 0.5 * width : (style.anchor == Anchor::kRight ? width : 0.0);
+  if (style.halo) {
+    cairo_move_to(impl_->cairo, x - shift, y);
+    cairo_text_path(impl_->cairo, text.c_str());
+    impl_->stroke({{255, 255, 255}, 6.0, {}, 1.0});
+  }
   impl_->source(style.colour);
   cairo_move_to(impl_->cairo, x - shift, y);
   cairo_show_text(impl_->cairo, text.c_str());

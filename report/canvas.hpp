@@ -28,6 +28,7 @@ struct TextStyle {
   bool bold = false;
   Rgb colour{34, 34, 34};
   Anchor anchor = Anchor::kLeft;
+  bool halo = false;  ///< a white rim, for text over the drawing
 };
 
 struct Box {
@@ -66,8 +67,8 @@ class Canvas {
 };
 
 /// Places for boxes of the given sizes (width, height) near their anchors: inside `bounds`, over no other
-/// box, no obstacle and no anchor; nearest place first, in a fixed order. A box that fits nowhere gets width
-/// 0.
+/// box, no obstacle and no anchor; as near as is possible without leaders that cross. A box that fits nowhere
+/// has width 0.
 [[nodiscard]] std::vector<Box> place_labels(std::span<const Eigen::Vector2d> anchors,
                                             std::span<const Eigen::Vector2d> sizes, const Box& bounds,
                                             std::vector<Box> obstacles);

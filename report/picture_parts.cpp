@@ -58,7 +58,7 @@ Box draw_axes(Canvas& canvas, const View& view, const Box& panel) {
   const Eigen::Vector2d origin(panel.x + panel.width - kRoom, panel.y + panel.height - kRoom);
   const Box space{origin.x() - kRoom, origin.y() - kRoom, 2.0 * kRoom, 2.0 * kRoom};
   const char* const names[] = {"X", "Y", "Z"};
-  const TextStyle style{23.0, true, kSoftInk, Anchor::kCentre};
+  const TextStyle style{23.0, true, kSoftInk, Anchor::kCentre, true};
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Vector2d on_page(view.orientation(0, axis), -view.orientation(1, axis));
     const std::vector<Eigen::Vector2d> line = {origin, origin + kLength * on_page};

@@ -174,16 +174,20 @@ void Raster::shade(int blur_px, double mm_per_px, double strength_ratio) {
   for (int row = 0; row < height_; ++row)
     for (int col = 0; col < width_; ++col) {
       if (!is_covered(col, row)) continue;
-      const auto slope = [&](int dx, int dy) {
-        const int c0 = std::max(0, col - dx), c1 = std::min(width_ - 1, col + dx);
-        const int r0 = std::max(0, row - dy), r1 = std::min(height_ - 1, row + dy);
-        const float before = depths[at(c0, r0)], after = depths[at(c1, r1)];
-        if (before == kFar || after == kFar) return 0.0;
-        return static_cast<double>(after - before) / (mm_per_px * std::max(1, (c1 - c0) + (r1 - r0)));
+      const auto slope = [&](int dx, int dy) {  // one-sided beside a rim
+        int c0 = std::max(0, col - dx), c1 = std::min(width_ - 1, col + dx);
+        int r0 = std::max(0, row - dy), r1 = std::min(height_ - 1, row + dy);
+        if (depths[at(c0, r0)] == kFar) c0 = col, r0 = row;
+        if (depths[at(c1, r1)] == kFar) c1 = col, r1 = row;
+        const double way_px = (c1 - c0) + (r1 - r0);
+        if (way_px <= 0.0) return 0.0;
+        return static_cast<double>(depths[at(c1, r1)] - depths[at(c0, r0)]) / (mm_per_px * way_px);
       };
       // Rises to the right or downwards face the light from the upper left.
       const double light = std::clamp(0.6 * slope(reach, 0) + 0.8 * slope(0, reach), -1.0, 1.0);
-      const double factor = 1.0 + strength_ratio * std::round(light * 100.0) / 100.0;
+      // Shadows darken up to a fifth, light hardly brightens: flat parts keep the very colours of the scale.
+      const double range = light < 0.0 ? 0.2 : 0.04;
+      const double factor = 1.0 + strength_ratio * range * std::round(100.0 * std::tanh(1.5 * light)) / 100.0;
       Rgb& c = colours_[at(col, row)];
       c = {scaled(c.red, factor), scaled(c.green, factor), scaled(c.blue, factor)};
     }

@@ -49,8 +49,9 @@ Raster render_points(std::span<const Eigen::Vector3d> points_mm, std::span<const
     raster.splat(view.project(points_mm[i]), radius_px, slope_mm_px, colour);
   }
   raster.erode(rim_px, kPaper);
+  const bool is_plain = std::find(colours.begin(), colours.end(), kPlainPoint) != colours.end();
   const double blur_px = std::clamp(1.5 * radius_px, 4.0, 60.0);
-  raster.shade(static_cast<int>(std::lround(blur_px)), 1.0 / view.scale_px_mm, 0.6);
+  raster.shade(static_cast<int>(std::lround(blur_px)), 1.0 / view.scale_px_mm, is_plain ? 1.6 : 1.0);
   const double dot_px = std::clamp(0.4 * spacing_px, 1.0, 4.0);
   for (std::size_t i = 0; i < points_mm.size(); ++i)
     if (colours.size() != 1 && colours[i] == ColourMap::no_data())
@@ -75,7 +76,12 @@ void render_mesh(Raster& raster, const TriangleMesh& mesh, const View& view, con
 }
 
 void hatch_unseen(Raster& raster, const TriangleMesh& cad, const View& view) {
-  for (const auto& triangle : cad.triangles) raster.no_data_triangle(corners_of(cad, triangle, view));
+  for (const auto& triangle : cad.triangles) {
+    const auto corners = corners_of(cad, triangle, view);
+    // Faces that look away (the inside of an opening) are no missing data; y points downwards on the page.
+    const Eigen::Vector3d ab = corners[1] - corners[0], ac = corners[2] - corners[0];
+    if (ab.x() * ac.y() - ab.y() * ac.x() < 0.0) raster.no_data_triangle(corners);
+  }
 }
 
 }  // namespace arris::report

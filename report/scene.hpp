@@ -32,7 +32,7 @@ inline constexpr Rgb kPlainPoint{214, 216, 219};
 /// A mesh in one colour, lit by its faces' normals; back faces darker.
 void render_mesh(Raster& raster, const TriangleMesh& mesh, const View& view, const Rgb& colour);
 
-/// Where the CAD shows and nothing was drawn: the pattern of no data.
+/// Where a face of the CAD looks at the eye and nothing was drawn: the pattern of no data.
 void hatch_unseen(Raster& raster, const TriangleMesh& cad, const View& view);
 
 }  // namespace arris::report
