@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -7,21 +6,20 @@
 #include "acquisition/contour_extract.hpp"
 #include "acquisition/contour_set.hpp"
 #include "acquisition/geometry/parallel_for.hpp"
+#include "acquisition/smooth_surface.hpp"
 #include "acquisition/types/frames.hpp"
 
 namespace arris {
 namespace {
 
-constexpr int kGapNeighbours = 12;
-constexpr double kOffSurfaceSigmas =
-    4.0;  // points of the cut's wall and strays stand off their neighbours' plane
-constexpr double kOffSurfaceSpacings = 0.06;
+constexpr double kBesideCos = 0.7;     // normals of points of one smooth face, a disc apart
 constexpr double kJoinSpacings = 4.0;  // ends of broken chains no farther apart than this belong together,
 constexpr double kFarJoinSpacings = 12.0;  // or than this if both chains are long beside the gap
 constexpr double kFarJoinRatio = 0.1;
 constexpr std::size_t kFewestClosed = 8;    // a chain of fewer points is not closed
 constexpr double kShortestSpacings = 20.0;  // shorter loops are voids of the sampling
 constexpr std::size_t kChunk = 256;
+constexpr double kLargestMismatch_rad = 0.5 * std::numbers::pi;  // between the disc's places at two points
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 double positive_angle(double angle_rad) {
@@ -119,29 +117,53 @@ class Walk {
     for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
   }
 
+  /// Closed loops and open chains; each needs a seed.
   std::vector<FoundContour> loops() const {
-    std::vector<std::int32_t> next(nodes_.size(), -1);
-    for (std::size_t n = 0; n < nodes_.size(); ++n) next[n] = successor(nodes_[n]);
-    std::vector<char> state(nodes_.size(), 0);  // 0 new, 1 on this walk, 2 done
+    const std::vector<std::int32_t> next = successors();
+    std::vector<char> is_head(nodes_.size(), 1), done(nodes_.size(), 0);
+    for (const std::int32_t to : next)
+      if (to >= 0) is_head[static_cast<std::size_t>(to)] = 0;
     std::vector<FoundContour> found;
-    for (std::size_t n = 0; n < nodes_.size(); ++n)
-      if (nodes_[n].seed) collect(static_cast<std::int32_t>(n), next, state, found);
+    for (const bool closed : {false, true})
+      for (std::size_t n = 0; n < nodes_.size(); ++n)
+        if (!done[n] && (closed || is_head[n]))
+          collect(static_cast<std::int32_t>(n), closed, next, done, found);
     return found;
   }
 
  private:
+  struct Step {
+    std::int32_t to = -1;
+    double mismatch_rad = kLargestMismatch_rad;  // below zero: the next point's touch begins at this point
+  };
+
+  /// The node after each node; of two that lead to the same one the better, so that chains are disjoint.
+  std::vector<std::int32_t> successors() const {
+    std::vector<std::int32_t> next(nodes_.size(), -1), previous(nodes_.size(), -1);
+    std::vector<double> mismatch_rad(nodes_.size(), kLargestMismatch_rad);
+    for (std::size_t n = 0; n < nodes_.size(); ++n) {
+      const Step step = step_from(nodes_[n]);
+      const auto to = static_cast<std::size_t>(step.to);
+      if (step.to < 0 || step.mismatch_rad >= mismatch_rad[to]) continue;
+      if (previous[to] >= 0) next[static_cast<std::size_t>(previous[to])] = -1;
+      mismatch_rad[to] = step.mismatch_rad;
+      previous[to] = static_cast<std::int32_t>(n);
+      next[n] = step.to;
+    }
+    return next;
+  }
+
   /// At the next point, the touch that the disc arrives in: stopped by this point, or else the nearest
   /// direction.
-  std::int32_t successor(const Node& node) const {
+  Step step_from(const Node& node) const {
     const std::size_t to = static_cast<std::size_t>(node.touch.after);
-    std::int32_t best = -1;
-    double best_mismatch = 1e300;
+    Step best;
     for (std::size_t k = first_[to]; k < first_[to + 1]; ++k) {
-      const double mismatch =
+      const double mismatch_rad =
           nodes_[k].touch.before == node.point ? -1.0 : direction_mismatch(node, nodes_[k]);
-      if (mismatch < best_mismatch) best_mismatch = mismatch, best = static_cast<std::int32_t>(k);
+      if (mismatch_rad < best.mismatch_rad) best = {static_cast<std::int32_t>(k), mismatch_rad};
     }
-    return best_mismatch < 1.0 ? best : -1;
+    return best;
   }
 
   /// Angle between the disc's place in the last touch and the start of a touch of the next point.
@@ -156,35 +178,21 @@ class Walk {
     return std::cos(angle_rad) * frame.col(0) + std::sin(angle_rad) * frame.col(1);
   }
 
-  void collect(std::int32_t start, const std::vector<std::int32_t>& next, std::vector<char>& state,
-               std::vector<FoundContour>& found) const {
-    std::vector<std::int32_t> walk;
-    std::int32_t n = start;
-    while (n >= 0 && state[static_cast<std::size_t>(n)] == 0) {
-      state[static_cast<std::size_t>(n)] = 1;
-      walk.push_back(n);
-      n = next[static_cast<std::size_t>(n)];
+  void collect(std::int32_t start, bool closed, const std::vector<std::int32_t>& next,
+               std::vector<char>& done, std::vector<FoundContour>& found) const {
+    FoundContour chain;
+    chain.contour.closed = closed;
+    chain.contour.source = "angle gap";
+    bool seeded = false;
+    for (std::int32_t n = start; n >= 0 && !done[static_cast<std::size_t>(n)];
+         n = next[static_cast<std::size_t>(n)]) {
+      done[static_cast<std::size_t>(n)] = 1;
+      const Node& node = nodes_[static_cast<std::size_t>(n)];
+      seeded = seeded || node.seed;
+      chain.contour.points_mm.push_back(points_mm_[static_cast<std::size_t>(node.point)]);
+      chain.contour.normals.push_back(normals_[static_cast<std::size_t>(node.point)]);
     }
-    auto tail_end = walk.cend();
-    if (n >= 0 && state[static_cast<std::size_t>(n)] == 1) {  // closed upon itself, perhaps after a tail
-      tail_end = std::find(walk.cbegin(), walk.cend(), n);
-      found.push_back(contour_of(tail_end, walk.cend(), true));
-    }
-    if (tail_end - walk.cbegin() > 1) found.push_back(contour_of(walk.cbegin(), tail_end, false));
-    for (const std::int32_t visited : walk) state[static_cast<std::size_t>(visited)] = 2;
-  }
-
-  FoundContour contour_of(std::vector<std::int32_t>::const_iterator begin,
-                          std::vector<std::int32_t>::const_iterator end, bool closed) const {
-    FoundContour found;
-    found.contour.closed = closed;
-    found.contour.source = "angle gap";
-    for (auto n = begin; n != end; ++n) {
-      const std::size_t point = static_cast<std::size_t>(nodes_[static_cast<std::size_t>(*n)].point);
-      found.contour.points_mm.push_back(points_mm_[point]);
-      found.contour.normals.push_back(normals_[point]);
-    }
-    return found;
+    if (seeded) found.push_back(std::move(chain));
   }
 
   std::span<const Eigen::Vector3d> points_mm_;
@@ -193,73 +201,11 @@ class Walk {
   std::vector<std::size_t> first_;  // nodes of point i: first_[i] .. first_[i + 1]
 };
 
-/// The 12 nearest of every point (without itself), kept because four steps look at them.
-std::vector<std::int32_t> neighbour_table(std::span<const Eigen::Vector3d> points_mm,
-                                          const NearestPoints& tree, int threads) {
-  std::vector<std::int32_t> table(points_mm.size() * kGapNeighbours, -1);
-  parallel_for(points_mm.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<Neighbour> near;
-    for (std::size_t i = begin; i < end; ++i) {
-      tree.nearest_k(points_mm[i], kGapNeighbours + 1, near);
-      std::size_t k = 0;
-      for (const Neighbour& neighbour : near)
-        if (neighbour.index != static_cast<std::int32_t>(i) && k < kGapNeighbours)
-          table[i * kGapNeighbours + k++] = neighbour.index;
-    }
-  });
-  return table;
-}
-
-double median_in_place(std::array<double, kGapNeighbours>& values, std::size_t count) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count / 2),
-                   values.begin() + static_cast<std::ptrdiff_t>(count));
-  return values[count / 2];
-}
-
-/// Component-wise median of the neighbours' normals: wall points beside an edge do not tilt it.
-Eigen::Vector3d median_normal(std::size_t i, std::span<const std::int32_t> near, const LocalPlanes& planes) {
-  Eigen::Vector3d normal = planes.normals[i];
-  std::array<double, kGapNeighbours> values{};
-  for (int axis = 0; axis < 3; ++axis) {
-    std::size_t count = 0;
-    for (const std::int32_t j : near)
-      if (j >= 0) values[count++] = planes.normals[static_cast<std::size_t>(j)][axis];
-    if (count > 0) normal[axis] = median_in_place(values, count);
-  }
-  return normal.norm() > 0.1 ? Eigen::Vector3d(normal.normalized()) : planes.normals[i];
-}
-
-/// The part of the cloud that is one smooth surface, with its normals.
-struct Surface {
-  std::vector<Eigen::Vector3d> normals;
-  std::vector<char> on;
-};
-
-Surface smooth_surface(std::span<const Eigen::Vector3d> points_mm, const std::vector<std::int32_t>& table,
-                       const LocalPlanes& planes, int threads) {
-  Surface surface{std::vector<Eigen::Vector3d>(points_mm.size()), std::vector<char>(points_mm.size(), 1)};
-  const double gate_mm =
-      std::max(kOffSurfaceSigmas * planes.noise_sigma_mm, kOffSurfaceSpacings * planes.spacing_median_mm);
-  parallel_for(points_mm.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
-    std::array<double, kGapNeighbours> heights{};
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::span<const std::int32_t> near(&table[i * kGapNeighbours], kGapNeighbours);
-      surface.normals[i] = median_normal(i, near, planes);
-      std::size_t count = 0;
-      for (const std::int32_t j : near)
-        if (j >= 0)
-          heights[count++] = surface.normals[i].dot(points_mm[static_cast<std::size_t>(j)] - points_mm[i]);
-      surface.on[i] = count > 0 && std::abs(median_in_place(heights, count)) < gate_mm ? 1 : 0;
-    }
-  });
-  return surface;
-}
-
 /// Looks at one point's neighbours on the surface; scratch that one thread reuses.
 class Surroundings {
  public:
   Surroundings(std::span<const Eigen::Vector3d> points_mm, const NearestPoints& tree,
-               const std::vector<std::int32_t>& table, const Surface& surface, const ContourOptions& options,
+               const NeighbourTable& table, const SmoothSurface& surface, const ContourOptions& options,
                double disc_mm)
       : points_mm_(points_mm),
         tree_(tree),
@@ -282,21 +228,26 @@ class Surroundings {
     tree_.within(points_mm_[i], 2.0 * disc_mm_, found_);
     near_.clear();
     for (const Neighbour& n : found_)
-      if (surface_.on[static_cast<std::size_t>(n.index)]) near_.push_back(n.index);
+      if (is_beside(i, static_cast<std::size_t>(n.index))) near_.push_back(n.index);
     return finder_.touches_of(i, near_);
   }
 
  private:
+  /// On the surface, and on the same side of a sharp edge.
+  [[nodiscard]] bool is_beside(std::size_t i, std::size_t j) const {
+    return surface_.on[j] && surface_.normals[i].dot(surface_.normals[j]) > kBesideCos;
+  }
+
   void take_nearest(std::size_t i) {
     near_.clear();
-    for (const std::int32_t j : std::span(&table_[i * kGapNeighbours], kGapNeighbours))
-      if (j >= 0 && surface_.on[static_cast<std::size_t>(j)]) near_.push_back(j);
+    for (const std::int32_t j : table_.of(i))
+      if (j >= 0 && is_beside(i, static_cast<std::size_t>(j))) near_.push_back(j);
   }
 
   std::span<const Eigen::Vector3d> points_mm_;
   const NearestPoints& tree_;
-  const std::vector<std::int32_t>& table_;
-  const Surface& surface_;
+  const NeighbourTable& table_;
+  const SmoothSurface& surface_;
   const ContourOptions& options_;
   double disc_mm_;
   TouchFinder finder_;
@@ -365,8 +316,8 @@ std::vector<FoundContour> joined(std::vector<FoundContour> loops, double spacing
 std::vector<std::int32_t> boundary_points(std::span<const Eigen::Vector3d> points_mm,
                                           const NearestPoints& tree, const LocalPlanes& planes,
                                           const ContourOptions& options) {
-  const std::vector<std::int32_t> table = neighbour_table(points_mm, tree, options.threads);
-  const Surface surface = smooth_surface(points_mm, table, planes, options.threads);
+  const NeighbourTable table = neighbour_table(points_mm, tree, options.threads);
+  const SmoothSurface surface = smooth_surface(points_mm, table, planes, options.threads);
   std::vector<char> has_gap(points_mm.size(), 0);
   parallel_for(points_mm.size(), kChunk, options.threads, [&](std::size_t begin, std::size_t end) {
     Surroundings around(points_mm, tree, table, surface, options, 0.0);
@@ -380,8 +331,8 @@ std::vector<std::int32_t> boundary_points(std::span<const Eigen::Vector3d> point
 
 ContourSet cloud_contours(std::span<const Eigen::Vector3d> points_mm, const NearestPoints& tree,
                           const LocalPlanes& planes, const ContourOptions& options) {
-  const std::vector<std::int32_t> table = neighbour_table(points_mm, tree, options.threads);
-  const Surface surface = smooth_surface(points_mm, table, planes, options.threads);
+  const NeighbourTable table = neighbour_table(points_mm, tree, options.threads);
+  const SmoothSurface surface = smooth_surface(points_mm, table, planes, options.threads);
   const double disc_mm = options.disc_spacings_ratio * planes.spacing_median_mm;
   std::vector<std::vector<Node>> nodes_of(points_mm.size());
   parallel_for(points_mm.size(), kChunk, options.threads, [&](std::size_t begin, std::size_t end) {
@@ -399,7 +350,9 @@ ContourSet cloud_contours(std::span<const Eigen::Vector3d> points_mm, const Near
   const double shortest_mm =
       options.min_length_mm > 0.0 ? options.min_length_mm : kShortestSpacings * planes.spacing_median_mm;
   std::vector<FoundContour> loops = Walk(points_mm, surface.normals, std::move(nodes)).loops();
-  return measured(joined(std::move(loops), planes.spacing_median_mm), shortest_mm);
+  loops = joined(std::move(loops), planes.spacing_median_mm);
+  std::erase_if(loops, [](const FoundContour& loop) { return loop.contour.points_mm.size() < 2; });
+  return measured(std::move(loops), shortest_mm);
 }
 
 }  // namespace arris
