@@ -1,0 +1,208 @@
+#include "tests/bench/accuracy/case.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/clean.hpp"
+#include "acquisition/geometry/rigid_fit.hpp"
+#include "cli/recipe_options.hpp"
+#include "tests/bench/accuracy/pcl_icp.hpp"
+
+namespace arris::bench {
+namespace {
+
+constexpr double kPclReachMm = 20.0;
+constexpr double kRawEdgeSpacings = 0.5;  // scatter of angle-gap edge points across the edge
+
+using Points = std::vector<Eigen::Vector3d>;
+
+Points tips(const ToolPath& path) {
+  Points points;
+  for (const PathPoint& row : path.points) points.push_back(row.tip_mm);
+  return points;
+}
+
+template <class Carry>
+Points carried(const Points& points, const Carry& carry) {
+  Points result;
+  for (const Eigen::Vector3d& p : points) result.push_back(carry(p));
+  return result;
+}
+
+/// The nominal face in the band: what a peer that knows no triangles registers.
+Points surface_points(const synthetic::Part& part, const Truth& truth) {
+  const double spacing_mm =
+      std::sqrt(part.band_area_mm2(0, part.band_mm()) / static_cast<double>(part.scan_points()));
+  Points points;
+  for (const synthetic::AreaSample& sample : part.area_samples(spacing_mm))
+    if (truth.nominal_distance_mm(sample.nominal_mm) < part.band_mm()) points.push_back(sample.nominal_mm);
+  return points;
+}
+
+/// Median over the edge of the face points within 10 mm.
+double points_near_edge(const synthetic::SyntheticScan& scan) {
+  Points face;
+  for (std::size_t i = 0; i < scan.points_mm.size(); ++i)
+    if (scan.labels[i] == synthetic::Label::kSurface) face.push_back(scan.points_mm[i]);
+  const synthetic::PointGrid grid(std::move(face), 10.0);
+  std::vector<std::size_t> counts;
+  for (std::size_t i = 0; i < scan.edge.size(); i += 10)
+    counts.push_back(grid.within(scan.edge[i].true_mm, 10.0).size());
+  std::nth_element(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2),
+                   counts.end());
+  return std::max(1.0, static_cast<double>(counts[counts.size() / 2]));
+}
+
+/// One scan with everything the rows of the table share.
+class Comparison {
+ public:
+  Comparison(const BenchPart& part, const synthetic::SyntheticScan& scan) : part_(part) {
+    const PointCloud cloud = scan.cloud();
+    scan_.emplace(prepare(part, cloud));
+    cad_from_local_ = scan.scan_from_cad.inverse() * Eigen::Translation3d(cloud.offset_mm);
+    registration_ = register_part(part.cad, scan_->model, registration_options(part.recipe, part.threads));
+  }
+
+  Outcome run() {
+    rigid_known();
+    if (registration_.coarse.usable() && registration_.rigid.usable()) {
+      rigid_icps();
+      subdivisions();
+    }
+    whole();
+    return std::move(outcome_);
+  }
+
+ private:
+  PathError error_of(const Points& path_local_mm) const {
+    return part_.truth.error(
+        part_.path_mm, carried(path_local_mm, [&](const Eigen::Vector3d& p) { return cad_from_local_ * p; }));
+  }
+  void put_rigid(Method method, const RigidMotion& local_from_cad) {
+    outcome_.error[method] =
+        error_of(carried(part_.path_mm, [&](const Eigen::Vector3d& p) { return local_from_cad * p; }));
+  }
+  void put_motion(Method method, const ContourMotion& motion) {
+    outcome_.error[method] = error_of(carried(part_.path_mm, [&](const Eigen::Vector3d& p) {
+      return motion.at(part_.cad.contours[0].nearest(p).arc_mm) * p;
+    }));
+  }
+
+  void rigid_known() {
+    put_rigid(kNominal, cad_from_local_.inverse());
+    Points nominal, deformed;
+    for (const synthetic::EdgePoint& e : part_.truth.edge()) {
+      nominal.push_back(e.nominal_mm);
+      deformed.push_back(e.true_mm);
+    }
+    put_rigid(kBestRigid, cad_from_local_.inverse() * fit_rigid(nominal, deformed).to_from);
+  }
+
+  void rigid_icps() {
+    const ScanModel& model = scan_->model;
+    const RigidMotion& start = registration_.coarse.scan_from_cad;
+    const RegistrationOptions options = registration_options(part_.recipe, part_.threads);
+    const Points contour =
+        resample(part_.cad.contours[0].contour(), std::max(0.5, model.spacing_mm)).points_mm;
+    const NearestPoints tree(model.edge_mm);
+    to_point_ = icp_point_to_point(contour, tree, model.edge_mm, start, options.rigid).scan_from_cad;
+    put_rigid(kOursToPoint, to_point_);
+    put_rigid(kOursToPlane, registration_.rigid.scan_from_cad);
+    put_rigid(kPclToPoint, pcl_point_to_point(contour, model.edge_mm, start));
+    put_rigid(kPclToPlane,
+              pcl_point_to_plane(part_.surface_mm, model.points_mm, model.normals, start, kPclReachMm));
+    for (const Method method : {kOursToPoint, kOursToPlane, kPclToPoint, kPclToPlane})
+      if (outcome_.error[method]->mean_mm < outcome_.error[outcome_.rigid_winner]->mean_mm)
+        outcome_.rigid_winner = method;
+    outcome_.error[kRigidIcp] = outcome_.error[outcome_.rigid_winner];
+  }
+
+  void subdivisions() {
+    const ScanModel& model = scan_->model;
+    const EdgeData raw{model.edge_mm, std::max(0.05, kRawEdgeSpacings * model.spacing_mm)};
+    const SubdivisionIcpOptions ours = registration_options(part_.recipe, part_.threads).subdivision;
+    SubdivisionIcpOptions paper = ours;
+    paper.match = SegmentMatch::kPaper;
+    paper.stability = StabilityPoints::kPaper;
+    put_motion(kPaper, subdivision_icp(part_.cad, model, raw, to_point_, paper).front());
+    paper.stability = StabilityPoints::kNone;
+    put_motion(kPaperNoSupport, subdivision_icp(part_.cad, model, raw, to_point_, paper).front());
+    put_motion(kPlain,
+               subdivision_icp(part_.cad, model, raw, registration_.rigid.scan_from_cad, ours).front());
+  }
+
+  void whole() {
+    outcome_.reasons = registration_.refusals;
+    if (!registration_.usable()) return;
+    const Correction correction = correct_path(part_, registration_);
+    outcome_.reasons.insert(outcome_.reasons.end(), correction.reasons.begin(), correction.reasons.end());
+    Points path;
+    for (const CorrectedPoint& row : correction.points) path.push_back(row.point.tip_mm);
+    const PathError error = error_of(path);
+    if (outcome_.reasons.empty())
+      outcome_.error[kWhole] = error;
+    else
+      outcome_.refused = error;
+  }
+
+  const BenchPart& part_;
+  std::optional<PreparedScan> scan_;
+  RigidMotion cad_from_local_ = RigidMotion::Identity();  // the true pose, undone
+  RigidMotion to_point_ = RigidMotion::Identity();
+  Registration registration_;
+  Outcome outcome_;
+};
+
+}  // namespace
+
+BenchPart::BenchPart(const std::filesystem::path& folder, int thread_count)
+    : fe(synthetic::load_fe_part(folder)),
+      truth(fe),
+      recipe(read_recipe(folder / "recipe.toml")),
+      drawing(read_drawing(recipe, true, thread_count)),
+      cad(prepare_cad(drawing.mesh, drawing.accepted)),
+      path_mm(tips(drawing.path)),
+      surface_mm(surface_points(fe, truth)),
+      threads(thread_count) {}
+
+std::vector<BenchCase> bench_cases() {
+  std::vector<BenchCase> cases(5);
+  cases[0].name = "clean, noise 0.05 mm";
+  cases[1].name = "clean, noise 0.02 mm";
+  cases[1].scan.noise_sigma_mm = 0.02;
+  cases[2].name = "clean, noise 0.1 mm";
+  cases[2].scan.noise_sigma_mm = 0.1;
+  cases[3].name = "line-profiler rows";
+  cases[3].scan.rows = true;
+  cases[4].name = "hard: 15 % missing, 5 % strays, 3 % wall points, density 2 : 1";
+  cases[4].scan.missing_ratio = 0.15;
+  cases[4].scan.stray_ratio = 0.05;
+  cases[4].scan.wall_ratio = 0.03;
+  cases[4].scan.density_variation_ratio = 2.0;
+  return cases;
+}
+
+PreparedScan prepare(const BenchPart& part, const PointCloud& cloud) {
+  Scan scan;
+  scan.cloud = clean(cloud, clean_options(part.recipe, part.threads)).cloud;
+  PrepareOptions options;
+  options.contour = contour_options(part.recipe, part.threads);
+  options.threads = part.threads;
+  return prepare_scan(scan, options);
+}
+
+Correction correct_path(const BenchPart& part, const Registration& registration) {
+  return correct(part.drawing.path, part.cad.surface, *registration.field, registration.rigid.scan_from_cad,
+                 correct_options(part.recipe, part.threads));
+}
+
+Outcome measure(const BenchPart& part, const BenchCase& bench_case, std::uint64_t seed) {
+  const synthetic::SyntheticScan scan = sample_scan(part.fe, bench_case.scan, seed);
+  Outcome outcome = Comparison(part, scan).run();
+  outcome.edge_limit_mm = scan.edge_limit_mm();
+  outcome.surface_limit_mm = bench_case.scan.noise_sigma_mm / std::sqrt(points_near_edge(scan));
+  outcome.points = scan.points_mm.size();
+  return outcome;
+}
+
+}  // namespace arris::bench

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "acquisition/types/frames.hpp"
+#include "fixtures/synthetic/part.hpp"
+
+namespace arris::bench {
+
+/// How far a carried path lies from the true edge. Means and the greatest over the rows, absolute; mm.
+struct PathError {
+  double mean_mm = 0.0, max_mm = 0.0;  ///< distance to the true curve
+  double normal_mm = 0.0;              ///< its mean part normal to the surface
+  double across_mm = 0.0;              ///< its mean part in the surface, across the contour
+  double along_mm = 0.0;               ///< mean arc length between the foot and the row's own material point
+};
+
+/// The true edge of one part, CAD frame: what the fixture's elements say, no code of the rooms.
+class Truth {
+ public:
+  explicit Truth(const synthetic::Part& part);
+
+  /// Row i of the nominal path and where it was carried, both in the CAD frame (the scan's true pose undone).
+  [[nodiscard]] PathError error(std::span<const Eigen::Vector3d> nominal_mm,
+                                std::span<const Eigen::Vector3d> carried_mm) const;
+  [[nodiscard]] double nominal_distance_mm(const Eigen::Vector3d& p_cad_mm) const;
+  [[nodiscard]] const std::vector<synthetic::EdgePoint>& edge() const { return edge_; }
+  /// A circle may turn about its axis unseen: there "along" says nothing.
+  [[nodiscard]] bool is_circle() const { return is_circle_; }
+
+ private:
+  struct Foot {
+    std::size_t chord = 0;  ///< from sample `chord` to the next
+    double ratio = 0.0;
+    Eigen::Vector3d offset_mm = Eigen::Vector3d::Zero();  ///< query less foot
+  };
+  [[nodiscard]] Foot nearest(const synthetic::PointGrid& grid, bool deformed,
+                             const Eigen::Vector3d& p_mm) const;
+  [[nodiscard]] double arc_mm(const Foot& foot) const;
+  [[nodiscard]] std::size_t next(std::size_t i) const { return i + 1 == edge_.size() ? 0 : i + 1; }
+
+  std::vector<synthetic::EdgePoint> edge_;
+  synthetic::PointGrid nominal_, true_;
+  double length_mm_ = 0.0;
+  bool is_circle_ = false;
+};
+
+}  // namespace arris::bench
