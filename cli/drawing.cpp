@@ -131,18 +131,7 @@ std::vector<Contour> accepted_contours(const Recipe& recipe, const ContourSet& l
 }
 
 ToolPath read_path(const Recipe& recipe, const std::vector<Contour>& accepted, std::vector<std::string>& notes) {
-  if (recipe.toolpath.from_contour.given) {
-    const Recipe::FromContour& from = recipe.toolpath.from_contour;
-    FromContourOptions options;
-    options.offset_mm = from.offset_mm;
-    options.depth_mm = from.depth_mm;
-    options.step_mm = from.step_mm;
-    options.lateral_rad = from.tilt_deg * 3.14159265358979 / 180.0;
-    options.approach_mm = from.approach_mm;
-    options.retract_mm = from.retract_mm;
-    options.feed_mm_s = recipe.toolpath.feed_mm_s;
-    return path_from_contours(accepted, options);
-  }
+  if (recipe.toolpath.from_contour.given) return path_from_contours(accepted, from_contour_options(recipe));
   if (recipe.toolpath.file.empty())
     throw Error(Fault::kRecipe, {.what = "the recipe names no tool path",
                                  .needed = "toolpath.file or [toolpath.from_contour]",

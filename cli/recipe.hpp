@@ -50,9 +50,13 @@ struct Recipe {
     double offset_mm = 0.0;
     double depth_mm = 0.0;
     double step_mm = 2.0;
+    double chord_error_mm = 0.02;
     double tilt_deg = 0.0;
-    double approach_mm = 20.0;
-    double retract_mm = 20.0;
+    double lead_deg = 0.0;
+    double seam_mm = 0.0;
+    bool reversed = false;
+    double approach_mm = 0.0;
+    double retract_mm = 0.0;
   };
   struct Toolpath {
     std::filesystem::path file;
@@ -65,7 +69,7 @@ struct Recipe {
   };
   struct Subdivision {
     double corner_radius_max_mm = 80.0;
-    double segment_length_max_mm = 120.0;
+    double segment_length_max_mm = 80.0;
     double band_mm = 60.0;
     double overlap_ratio = 0.3;
     std::string match = "foot";

@@ -110,4 +110,21 @@ CorrectOptions correct_options(const Recipe& recipe, int threads) {
   return options;
 }
 
+FromContourOptions from_contour_options(const Recipe& recipe) {
+  const Recipe::FromContour& from = recipe.toolpath.from_contour;
+  FromContourOptions options;
+  options.offset_mm = from.offset_mm;
+  options.depth_mm = from.depth_mm;
+  options.step_mm = from.step_mm;
+  options.chord_error_mm = from.chord_error_mm;
+  options.lateral_rad = radians(from.tilt_deg);
+  options.lead_rad = radians(from.lead_deg);
+  options.seam_mm = from.seam_mm;
+  options.reversed = from.reversed;
+  options.approach_mm = from.approach_mm;
+  options.retract_mm = from.retract_mm;
+  options.feed_mm_s = recipe.toolpath.feed_mm_s;
+  return options;
+}
+
 }  // namespace arris

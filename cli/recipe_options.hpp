@@ -5,6 +5,7 @@
 #include "cli/recipe.hpp"
 #include "registration/registration.hpp"
 #include "toolpath/correct.hpp"
+#include "toolpath/from_contour.hpp"
 
 namespace arris {
 
@@ -14,6 +15,7 @@ namespace arris {
 [[nodiscard]] ContourOptions contour_options(const Recipe& recipe, int threads);
 [[nodiscard]] RegistrationOptions registration_options(const Recipe& recipe, int threads);
 [[nodiscard]] CorrectOptions correct_options(const Recipe& recipe, int threads);
+[[nodiscard]] FromContourOptions from_contour_options(const Recipe& recipe);
 
 /// scan.initial.scan_from_cad as a motion: a 4x4 or 3x4 matrix row by row, or x, y, z, qw, qx, qy, qz; mm.
 /// Throws Error(kRecipe) when it is no rigid motion (a mirror, a scale, a last row that is not 0 0 0 1).

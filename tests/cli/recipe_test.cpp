@@ -168,6 +168,21 @@ TEST(Recipe, DefaultsAreThoseOfTheRooms) {
   EXPECT_EQ(correct.path_reach_mm, CorrectOptions().path_reach_mm);
 }
 
+TEST(Recipe, FromContourDefaultsAreThoseOfTheRoom) {
+  const FromContourOptions read = from_contour_options(Recipe()), room;
+  EXPECT_EQ(read.offset_mm, room.offset_mm);
+  EXPECT_EQ(read.depth_mm, room.depth_mm);
+  EXPECT_EQ(read.lateral_rad, room.lateral_rad);
+  EXPECT_EQ(read.lead_rad, room.lead_rad);
+  EXPECT_EQ(read.step_mm, room.step_mm);
+  EXPECT_EQ(read.chord_error_mm, room.chord_error_mm);
+  EXPECT_EQ(read.seam_mm, room.seam_mm);
+  EXPECT_EQ(read.approach_mm, room.approach_mm);
+  EXPECT_EQ(read.retract_mm, room.retract_mm);
+  EXPECT_EQ(read.reversed, room.reversed);
+  EXPECT_EQ(read.feed_mm_s, room.feed_mm_s);
+}
+
 TEST(Recipe, RegistrationDefaultsAreThoseOfTheRoom) {
   const RegistrationOptions read = registration_options(Recipe(), 0), room;
   EXPECT_EQ(read.method, room.method);
