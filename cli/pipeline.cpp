@@ -26,6 +26,12 @@ void refuse_wrong_input(const CoarseAlignment& coarse, const Recipe& recipe) {
                                 .found = "its mirror image fits the part, the scan itself does not",
                                 .needed = "a right-handed scan of this part",
                                 .next = "export the scan again without mirroring, or take the drawing of the other hand"});
+  if (coarse.no_points)
+    throw Error(Fault::kInput, {.what = "no points in the band",
+                                .found = "no scan point near the part at the initial pose",
+                                .needed = "a scan that shows the contour's surroundings (scan.initial, "
+                                          "registration.subdivision.band_mm)",
+                                .next = "check scan.initial, or leave it out to search for the pose"});
   if (coarse.unit_ratio == 1.0) return;
   char ratio[32];
   std::snprintf(ratio, sizeof ratio, "%g", coarse.unit_ratio);

@@ -195,23 +195,28 @@ std::string percent(double ratio) {
   return text;
 }
 
-CoarseAlignment from_initial(const CadModel& cad, const ScanModel& scan, const CoarseAlignOptions& options,
-                             const Search& search) {
+CoarseAlignment from_initial(const ScanModel& scan, const CoarseAlignOptions& options, const Search& search) {
   CoarseAlignment result;
   result.start = "initial pose";
-  const ScanModel light = hypothesis(scan, false, false);
-  const NearestPoints edges(light.edge_mm);
-  const Candidate refined = search.refine(light, edges, *options.initial_scan_from_cad);
-  if (refined.score_mm > 1e299) {
-    result.reason = "the initial pose of the recipe puts no scan point near the part";
+  Candidate best;
+  for (const bool flip : {false, true}) {
+    if (flip && scan.side == SideKnown::kYes) break;  // else the pose decides which side the normals are on
+    const ScanModel light = hypothesis(scan, flip, false);
+    Candidate refined = search.refine(light, NearestPoints(light.edge_mm), *options.initial_scan_from_cad);
+    refined.flip = flip;
+    if (refined.score_mm < best.score_mm) best = refined;
+  }
+  if (best.score_mm > 1e299) {
+    result.reason = "no points in the band: the initial pose of the recipe puts no scan point near the part";
+    result.no_points = true;
     return result;
   }
-  result.scan_from_cad = refined.scan_from_cad;
-  result.score_mm = refined.score_mm;
-  const double turned = rotation_between_rad(*options.initial_scan_from_cad, refined.scan_from_cad);
+  result.scan_from_cad = best.scan_from_cad;
+  result.score_mm = best.score_mm;
+  result.flipped_normals = best.flip;
+  const double turned = rotation_between_rad(*options.initial_scan_from_cad, best.scan_from_cad);
   if (turned > options.within_rad)
     result.reason = "the data turn the part by more than the initial pose allows (within_deg)";
-  (void)cad;
   return result;
 }
 
@@ -252,7 +257,7 @@ std::vector<std::string> free_directions(const Eigen::Matrix<double, 6, 6>& info
 
 CoarseAlignment coarse_align(const CadModel& cad, const ScanModel& scan, const CoarseAlignOptions& options) {
   const Search search(cad, options);
-  if (options.initial_scan_from_cad) return from_initial(cad, scan, options, search);
+  if (options.initial_scan_from_cad) return from_initial(scan, options, search);
 
   CoarseAlignment result;
   result.start = "matching loops";

@@ -27,6 +27,7 @@ struct CoarseAlignment {
   std::string start;             ///< "matching loops", "initial pose"
   std::string reason;            ///< refusal in plain words; empty when usable
   bool mirrored = false;         ///< the scan's mirror image fits, the scan does not: an input error for the caller
+  bool no_points = false;        ///< an initial pose with no scan point near the part: an input error for the caller
   double unit_ratio = 1.0;       ///< not 1: the loops fit when the scan is scaled by this (25.4, 1000, ..)
   [[nodiscard]] bool usable() const { return reason.empty(); }
 };

@@ -14,7 +14,7 @@ struct EdgeFitOptions {
   double knot_mm = 40.0;               ///< distance of the spline knots along the contour
   double strip_mm = 10.0;              ///< widest strip of material whose density the edge is judged by
   double normal_strip_mm = 25.0;       ///< strip whose points give height and tilt at the edge
-  double bend_across_per_mm = 2e-4;    ///< expected second derivative of the shift across, 1/mm
+  double bend_across_per_mm = 5e-5;    ///< expected second derivative of the shift across, 1/mm
   double bend_normal_per_mm = 1e-4;    ///< and of the height
   double tilt_change_rad = 0.01;       ///< expected change of tilt from knot to knot
   int threads = 0;

@@ -13,6 +13,8 @@ constexpr double kSharpenedSigmaRatio = 0.1;  // scatter of the edge by support,
 constexpr int kSharpeningPasses = 2;
 constexpr double kRigidStartLooseness = 8.0;
 constexpr double kSampleMm = 2.0;
+constexpr double kSeamMm = 1.5, kSeamEdgeLimits = 3.0;      // how far segments may disagree: bending, and the edge limit
+constexpr double kResidualMm = 0.15, kResidualSigmas = 5.0;  // of the height beside the edge
 
 /// Turns an undecided scan to the side that the start pose chose.
 void flip(ScanModel& scan) {
@@ -136,6 +138,45 @@ Unseen longest_unseen(const EdgeFit& edge, bool closed) {
   return longest;
 }
 
+/// Where two neighbouring segments disagree about the place of their common cut, one of them is wrong.
+void judge_seams(const CadModel& cad, Registration& result) {
+  for (std::size_t c = 0; c < result.contours.size(); ++c) {
+    const ContourMotion& motion = result.contours[c].motion;
+    const std::vector<Segment>& segments = motion.subdivision().segments();
+    const double edge_limit_mm = 1.0 / (50.0 * std::max(result.contours[c].edge.density_per_mm2, 1e-9));
+    const double limit_mm = kSeamMm + kSeamEdgeLimits * edge_limit_mm;
+    for (std::size_t z = 0; z < segments.size(); ++z) {
+      const std::size_t next = (z + 1) % segments.size();
+      if (next == z || (next == 0 && !cad.contours[c].closed())) continue;
+      const double s_mm = cad.contours[c].wrap_mm(segments[z].end_mm);
+      const Eigen::Vector3d p = cad.contours[c].point_mm(s_mm);
+      // along the contour a segment may slide: that moves no edge
+      Eigen::Vector3d apart = motion.fits()[z].scan_from_cad * p - motion.fits()[next].scan_from_cad * p;
+      const Eigen::Vector3d tangent = motion.fits()[z].scan_from_cad.linear() * cad.contours[c].tangent(s_mm);
+      apart -= apart.dot(tangent) * tangent;
+      if (apart.norm() < limit_mm) continue;
+      char text[200];
+      std::snprintf(text, sizeof text,
+                    "contour %d: the segments on both sides of s = %.0f mm disagree by %.1f mm (at most %.1f)",
+                    cad.contours[c].contour().id, s_mm, apart.norm(), limit_mm);
+      result.refusals.emplace_back(text);
+    }
+  }
+}
+
+/// Heights beside the edge that scatter far more than the scanner's noise are not explained by the field.
+void judge_residuals(const CadModel& cad, const ScanModel& scan, Registration& result) {
+  for (std::size_t c = 0; c < result.contours.size(); ++c) {
+    const double limit_mm = kResidualMm + kResidualSigmas * scan.noise_sigma_mm;
+    if (result.contours[c].edge.residual_sigma_mm < limit_mm) continue;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "contour %d: the surface beside the edge is not explained: residual %.2f mm, scanner noise %.2f mm",
+                  cad.contours[c].contour().id, result.contours[c].edge.residual_sigma_mm, scan.noise_sigma_mm);
+    result.refusals.emplace_back(text);
+  }
+}
+
 void judge_coverage(const CadModel& cad, const RegistrationOptions& options, Registration& result) {
   for (std::size_t c = 0; c < result.contours.size(); ++c) {
     const EdgeFit& edge = result.contours[c].edge;
@@ -206,6 +247,10 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   for (const ContourResult& contour : result.contours)
     result.density_per_mm2 = std::max(result.density_per_mm2, contour.edge.density_per_mm2);
   judge_coverage(cad, options, result);
+  if (options.method == RegistrationMethod::kSubdivision) {
+    judge_seams(cad, result);
+    judge_residuals(cad, scan, result);
+  }
   return result;
 }
 

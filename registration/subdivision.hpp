@@ -10,7 +10,7 @@ namespace arris {
 /// Where and how finely a contour is divided: the paper's tuning parameters by name (section 3.1).
 struct SubdivisionOptions {
   double corner_radius_max_mm = 80.0;    ///< rho_T: a point that bends tighter is a corner point (H1)
-  double segment_length_max_mm = 120.0;  ///< epsilon: longer pieces are divided again (H2)
+  double segment_length_max_mm = 80.0;  ///< epsilon: longer pieces are divided again (H2)
   double overlap_ratio = 0.3;            ///< beta: each segment reaches beta L / 2 beyond both ends; at most 0.5
   void check() const;                    ///< throws Error(kRecipe)
 };

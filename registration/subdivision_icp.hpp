@@ -32,7 +32,7 @@ struct SubdivisionIcpOptions {
   int max_iterations = 30;              ///< k_max
   double stop_change_ratio = 1e-3;      ///< delta
   double neighbour_turn_rad = 0.03;     ///< expected turn of one segment against the next
-  double neighbour_shift_mm = 2.0;      ///< and its shift; both only matter where data are missing
+  double neighbour_shift_mm = 1.0;      ///< and its shift; both only matter where data are missing
   int threads = 0;
   void check() const;
 };
