@@ -28,7 +28,8 @@ constexpr const char* kAbout =
     "result/        what the main job made of it; begin with result/report.html\n\n"
     "To run it yourself:  arris run recipe.toml --scan scan.ply --out mine\n";
 
-/// The folder of the built-in parts: ARRIS_FIXTURES, or fixtures/ beside or above the program.
+/// The folder of the built-in parts: ARRIS_FIXTURES, or fixtures/ above the program, or of the checkout it
+/// was built from.
 fs::path fixtures_folder() {
   if (const char* given = std::getenv("ARRIS_FIXTURES"); given != nullptr && *given != '\0') {
     if (fs::is_directory(fs::path(given) / "fe")) return given;
@@ -43,6 +44,8 @@ fs::path fixtures_folder() {
     if (fs::is_directory(folder / "fixtures" / "fe")) return folder / "fixtures";
     if (folder == folder.parent_path()) break;
   }
+  if (fs::is_directory(fs::path(ARRIS_BUILT_FROM) / "fixtures" / "fe"))
+    return fs::path(ARRIS_BUILT_FROM) / "fixtures";
   throw Error(Fault::kInput, ErrorText{"the built-in parts are not here",
                                        "fixtures/fe, looked for above the program",
                                        {},

@@ -171,6 +171,41 @@ TEST(Program, InfoSaysWhatAFileHolds) {
   EXPECT_NE(json.out.find("\"has_normals\": true"), std::string::npos) << json.out;
 }
 
+TEST(Program, DemoReplacesItsOwnFolderAndNoOther) {
+  const testing::TestFolder folder;
+  for (int time = 0; time < 2; ++time) {
+    const Ran ran = run_arris("demo --out d", folder.path());
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_NE(ran.out.find("report.html"), std::string::npos) << ran.out;
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "d" / "result" / "report.html"));
+  }
+  folder.write("mine/work.txt", "mine");
+  const Ran refused = run_arris("demo --out mine", folder.path());
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_EQ(testing::text_of(folder.path() / "mine" / "work.txt"), "mine");
+}
+
+/// Runs the example's main job and sends it a signal after a while; the exit code.
+int interrupted_after(double seconds, const char* signal, const std::filesystem::path& folder) {
+  const std::string job = "run '" + (kExample / "recipe.toml").string() + "' --scan '" +
+                          (kExample / "scan.ply").string() + "' --out r & sleep " + std::to_string(seconds) +
+                          "; kill -" + signal + " $!; wait $!; exit $? #";
+  return run_arris(job, folder).code;
+}
+
+TEST(Program, InterruptedRunLeavesNothingHalfWritten) {
+  int heard = 0;
+  for (const char* signal : {"INT", "TERM"})
+    for (double seconds = 0.01; seconds < 0.5 && heard < 2; seconds *= 1.5) {
+      const testing::TestFolder folder;
+      const int code = interrupted_after(seconds, signal, folder.path());
+      if (code != 130) continue;  // before the program listened, or after it was done
+      ++heard;
+      EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << signal << " after " << seconds << " s";
+    }
+  EXPECT_GT(heard, 0);
+}
+
 TEST(Program, ReaderThatLeavesEarlyIsNoError) {
   const Ran ran = run_arris("recipe print | head -1 > /dev/null; exit ${PIPESTATUS:-0} #");
   EXPECT_TRUE(ran.err.empty()) << ran.err;
