@@ -226,7 +226,7 @@ std::size_t load_text_rows(const Source& source, std::string_view text, const Ro
   parallel_for(chunks, 1, 0, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::string_view part = chunk(i);
-      const auto lines = line_ends_in(part) + 1;
+      const auto lines = line_ends_in(part) + (part.back() == '\n' ? 0 : 1);
       room[i] = std::min(lines, part.size() / kLeastRowBytes + 1);
     }
   });
