@@ -55,11 +55,17 @@ std::string correction_why(const RunRecord& record) {
     return record.refusals.front() + (more == 0 ? "" : " (and " + std::to_string(more) + " more)");
   }
   if (!record.has_toolpath) return "this was an inspection without a tool path";
-  return record.program_note.empty() ? "the corrected path may be used" : record.program_note;
+  if (record.program_written) return "the corrected path may be used; programs: " + record.program_note;
+  return "the corrected path may be used" + (record.program_note.empty() ? "" : "; " + record.program_note);
 }
 
 const Judged& deciding(const RunRecord& record) {
   return record.state == "free" ? record.judged_as_scanned : record.judged_pulled_back;
+}
+
+std::string inspection_why(const RunRecord& record) {
+  const std::string& text = deciding(record).text;
+  return text.empty() && !record.accepted() ? "the run was refused before anything could be judged" : text;
 }
 
 std::string list_of(const std::string& kind, const std::vector<std::string>& lines) {
@@ -122,7 +128,7 @@ Facts alignment_facts(const RunRecord& record) {
       {"side decided by", escaped(a.side_decided_by)},
       {"rms, point to plane", mm(a.rms_mm) + " mm over " + grouped_text(a.pairs) + " kept pairs in the band"},
       {"overlap", percent(a.overlap_ratio)},
-      {"second best pose", mm(a.runner_up_ratio, 2) + " of the best one's score"},
+      {"second best pose", mm(a.runner_up_ratio, 2) + " times the score of the best (near 1: ambiguous)"},
       {"free directions", escaped(joined(a.free_directions, "none"))},
       {"standard deviations", escaped(standard_deviations(a))}};
 }

@@ -120,7 +120,7 @@ td.hash { width: 59%; font-size: 10.8px; padding-top: 9px; }
 .scroll { overflow-x: auto; }
 .matrix td { font-family: "DejaVu Sans Mono", Consolas, Menlo, monospace; font-size: 13px; text-align: right; }
 .swatch { display: inline-block; width: 26px; height: 14px; border: 1px solid #777; vertical-align: -2px; }
-.hatch { background: repeating-linear-gradient(135deg, #c4c4c4 0 4px, #e8e8e8 4px 9px); }
+.hatch { background: repeating-linear-gradient(135deg, #d0d0d0 0 4px, #eeeeee 4px 9px); }
 figure { margin: 10px 0 18px; break-inside: avoid; }
 figure img, figure svg { display: block; width: 100%; height: auto; }
 figcaption { color: var(--soft); font-size: 14.5px; margin-top: 4px; }

@@ -14,9 +14,9 @@ namespace {
 
 constexpr double kBarWidth = 224.0;
 
-const LegendItem kFoundEdge{"edge found in the scan", {{0, 0, 0}, 3.0, {}, 1.0}, std::nullopt, false};
+const LegendItem kFoundEdge{"edge found in the scan", {{0, 0, 0}, 2.2, {}, 1.0}, std::nullopt, false};
 const LegendItem kDroppedLoop{"loop not used", {{60, 60, 60}, 2.0, {9.0, 6.0}, 1.0}, std::nullopt, false};
-const LegendItem kToolPath{"corrected path", {{255, 255, 255}, 3.0, {}, 1.0}, Rgb{0, 0, 0}, false};
+const LegendItem kToolPath{"corrected path", {{255, 255, 255}, 6.0, {}, 1.0}, Rgb{0, 0, 0}, false};
 const LegendItem kWorst{
     "H highest, L lowest points, mm", {{255, 255, 255}, 2.0, {}, 1.0}, std::nullopt, true};
 
@@ -49,12 +49,7 @@ std::vector<Eigen::Vector2d> on_page(const RunRecord& record, const std::vector<
   return pixels;
 }
 
-void draw_edges_and_path(Canvas& canvas, const RunRecord& record, const View& view) {
-  for (const Contour& contour : record.dropped_contours)
-    draw_line(canvas, on_page(record, contour.points_mm, view), contour.closed, kDroppedLoop);
-  for (const Contour& contour : record.found_contours)
-    draw_line(canvas, on_page(record, contour.points_mm, view), contour.closed, kFoundEdge);
-  if (!record.accepted()) return;
+void draw_path(Canvas& canvas, const RunRecord& record, const View& view) {
   std::vector<Eigen::Vector3d> run;
   const auto flush = [&] {
     draw_line(canvas, on_page(record, run, view), false, kToolPath);
@@ -69,6 +64,15 @@ void draw_edges_and_path(Canvas& canvas, const RunRecord& record, const View& vi
       run.push_back(points[i].point.tip_mm);
   }
   flush();
+}
+
+// The path below, the edge on top: where they lie on each other both are seen.
+void draw_edges_and_path(Canvas& canvas, const RunRecord& record, const View& view) {
+  for (const Contour& contour : record.dropped_contours)
+    draw_line(canvas, on_page(record, contour.points_mm, view), contour.closed, kDroppedLoop);
+  if (record.accepted()) draw_path(canvas, record, view);
+  for (const Contour& contour : record.found_contours)
+    draw_line(canvas, on_page(record, contour.points_mm, view), contour.closed, kFoundEdge);
 }
 
 std::vector<Flag> flags_of(const RunRecord& record, const ColourMap& map, const View& view,

@@ -35,7 +35,7 @@ void blur_line(const float* values, float* out, int count, std::ptrdiff_t stride
 }  // namespace
 
 Rgb no_data_pattern(int col, int row) {
-  return (col + row) % 12 < 5 ? Rgb{196, 196, 196} : Rgb{232, 232, 232};
+  return (col + row) % 12 < 5 ? Rgb{208, 208, 208} : Rgb{238, 238, 238};
 }
 
 Raster::Raster(int width_px, int height_px, const Rgb& background) : width_(width_px), height_(height_px) {

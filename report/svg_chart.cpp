@@ -209,7 +209,7 @@ Axis y_axis_of(const LineChart& chart, double bottom_px) {
       high = std::max(high, y);
     }
   for (const double limit : chart.limits) {
-    if (limit > 3.0 * std::max(high, 1e-9) || limit < 3.0 * std::min(low, -1e-9))
+    if (limit > 1.6 * std::max(high, 1e-9) || limit < 1.6 * std::min(low, -1e-9))
       continue;  // far off: not drawn
     low = std::min(low, limit);
     high = std::max(high, limit);
