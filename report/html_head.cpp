@@ -193,7 +193,7 @@ std::string banner(const RunRecord& record) {
               card(css_of_correction(record), "Correction of the tool path", correction_word(record),
                    correction_why(record)) +
                   card(css_of(record.inspection_verdict()), "Inspection",
-                       verdict_word(record.inspection_verdict()), deciding(record).text),
+                       verdict_word(record.inspection_verdict()), inspection_why(record)),
               "verdicts");
   html += tag("div", tag("strong", "What to do now") + list_of("ol", next_steps(record)), "next") + "\n";
   if (!record.accepted())
