@@ -34,8 +34,8 @@ std::string text_of(const std::filesystem::path& file) {
 Ran run_arris(const std::string& arguments, const std::filesystem::path& folder) {
   const TestFolder capture;
   const std::string out = (capture.path() / "out").string(), err = (capture.path() / "err").string();
-  const std::string command = "cd '" + folder.string() + "' && '" ARRIS_BINARY_DIR "/cli/arris' " +
-                              arguments + " >'" + out + "' 2>'" + err + "' </dev/null";
+  const std::string command = "cd '" + folder.string() + "' && { '" ARRIS_BINARY_DIR "/cli/arris' " +
+                              arguments + "\n} >'" + out + "' 2>'" + err + "' </dev/null";
   const int status = std::system(command.c_str());  // NOLINT(concurrency-mt-unsafe): one test a process
   Ran ran;
   ran.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

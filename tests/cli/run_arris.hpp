@@ -11,7 +11,8 @@ struct Ran {
   std::string out, err;
 };
 
-/// Runs `arris ARGUMENTS` through the shell, in `folder`.
+/// Runs `arris ARGUMENTS` through the shell, in `folder`; arguments may go on with a pipe or further
+/// commands.
 [[nodiscard]] Ran run_arris(const std::string& arguments, const std::filesystem::path& folder = ".");
 
 /// A folder of its own for one test, empty at the start, removed at the end.
