@@ -18,6 +18,7 @@ namespace arris {
 namespace {
 
 constexpr double kDeviationReachMm = 25.0;
+constexpr double kMirrorAlikeRatio = 1.3;  // score of the mirror image over the scan's own
 
 /// What makes a start pose impossible because the input is wrong, not because the data are poor.
 void refuse_wrong_input(const CoarseAlignment& coarse, const Recipe& recipe) {
@@ -126,6 +127,9 @@ Processed process(const Recipe& recipe, const Drawing& drawing, Measurement& mea
   const Registration found = register_part(cad, scan, local_options(recipe, measurement.cloud.offset_mm, threads));
   refuse_wrong_input(found.coarse, recipe);
   record.refusals = found.refusals;
+  if (found.coarse.mirror_ratio > 0.0 && found.coarse.mirror_ratio < kMirrorAlikeRatio)
+    record.notes.push_back(
+        "the part is nearly its own mirror image: a scan that was exported mirrored would not be noticed");
   describe_alignment(found, measurement, record.alignment);
   describe_loops(found, scan, record);
   if (!found.usable()) return processed;

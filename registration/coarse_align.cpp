@@ -278,6 +278,7 @@ CoarseAlignment coarse_align(const CadModel& cad, const ScanModel& scan, const C
   result.score_mm = best.score_mm;
   result.flipped_normals = best.flip;
   const std::vector<Candidate> mirrored = search.candidates(scan, false, true, 2);
+  if (!mirrored.empty()) result.mirror_ratio = mirrored.front().score_mm / best.score_mm;
   if (!side_open && !mirrored.empty() && mirrored.front().score_mm < kMirrorBetterRatio * best.score_mm &&
       best.score_mm > 2.0 * scan.spacing_mm) {
     result.mirrored = true;

@@ -26,6 +26,8 @@ struct CoarseAlignment {
   bool flipped_normals = false;  ///< the side was unknown and the shape decided for the other sign
   std::string start;             ///< "matching loops", "initial pose"
   std::string reason;            ///< refusal in plain words; empty when usable
+  double mirror_ratio = 0.0;     ///< score of the scan's mirror image over score_mm; near 1: a mirrored export would
+                                 ///< not be noticed. 0: not tried
   bool mirrored = false;         ///< the scan's mirror image fits, the scan does not: an input error for the caller
   bool no_points = false;        ///< an initial pose with no scan point near the part: an input error for the caller
   double unit_ratio = 1.0;       ///< not 1: the loops fit when the scan is scaled by this (25.4, 1000, ..)
