@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
+
 #include "acquisition/files/atomic_file.hpp"
+#include "acquisition/files/file_info.hpp"
 #include "acquisition/files/sha256.hpp"
 #include "cli/commands.hpp"
 #include "cli/console.hpp"
@@ -14,6 +18,7 @@
 namespace arris {
 namespace {
 
+constexpr std::size_t kDroppedShown = 10;
 constexpr double kStraightMm = 1e8;  // a bend radius beyond this is a straight line
 
 /// The recipe's drawing, or a scan of its part; without a recipe a mesh counts as a drawing.
@@ -45,9 +50,21 @@ void print_table(const ContoursArgs& args, const FileContours& file, const Conto
   for (const std::string& note : file.contours.notes) console::print("note: " + note);
   if (!file.contours.dropped.empty())
     console::print(std::to_string(file.contours.dropped.size()) + " more dropped:");
-  for (const FoundContour& found : file.contours.dropped)
+  for (std::size_t i = 0; i < std::min(kDroppedShown, file.contours.dropped.size()); ++i) {
+    const FoundContour& found = file.contours.dropped[i];
     console::print(fmt::format("     {:>11.1f}  {:<6}  {}", found.length_mm,
                                found.contour.closed ? "closed" : "open", found.note));
+  }
+  if (file.contours.dropped.size() > kDroppedShown) console::print("     ... (--json lists all)");
+}
+
+/// A file in metres that is read as millimetres shows by its size.
+void doubt_units(const FileContours& file) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3f& p : file.cloud.points_mm) box.extend(p.cast<double>());
+  for (const Eigen::Vector3d& p : file.mesh.vertices_mm) box.extend(p);
+  if (!box.isEmpty() && guess_unit(box.sizes().maxCoeff()) == "m")
+    console::note("the file was read as mm; by its size it is perhaps in m: --units m");
 }
 
 void draw(const ContoursArgs& args, const FileContours& file) {
@@ -72,9 +89,10 @@ int run_contours(const ContoursArgs& args) {
   const Recipe recipe = args.recipe ? read_recipe(*args.recipe) : Recipe();
   const FileRole role = role_of(args, recipe);
   const std::string& recipe_units = role == FileRole::kDrawing ? recipe.part.cad_units : recipe.scan.units;
-  const double to_mm = unit_mm(args.recipe ? recipe_units : args.units);
+  const double to_mm = unit_mm(args.recipe ? recipe_units : args.units.empty() ? "mm" : args.units);
   const FileContours file = find_file_contours(args.file, role, to_mm, recipe, args.threads);
   stop_if_interrupted();
+  if (!args.recipe && args.units.empty()) doubt_units(file);
   ContourChoice choice = choose(file.contours, args.accept, file.offset_mm);
   choice.file = args.file.filename().string();
   choice.to_mm = to_mm;

@@ -66,7 +66,9 @@ void add_contours(CLI::App& app, const Common& common, Chosen& chosen) {
   command->add_option("FILE", args->file, "mesh of the drawing, or a scan")->required()->option_text(" ");
   command->add_option("--recipe", args->recipe, "recipe whose units and [contour] options are used")
       ->option_text("FILE");
-  command->add_option("--units", args->units, "unit of the file when there is no recipe: mm, cm, m, inch")
+  command
+      ->add_option("--units", args->units,
+                   "unit of the file when there is no recipe: mm (unless given), cm, m, inch")
       ->check(CLI::IsMember({"mm", "cm", "m", "inch"}))
       ->option_text("UNIT");
   command->add_option("--accept", args->accept, "ids to accept; all others are rejected")

@@ -14,7 +14,7 @@ struct ContoursArgs {
   std::filesystem::path file;
   std::optional<std::filesystem::path> recipe, out, png;
   std::vector<int> accept;   ///< ids the operator accepts; the others are rejected
-  std::string units = "mm";  ///< of the file, when no recipe says
+  std::string units;  ///< of the file, when no recipe says; empty: mm
   bool json = false;
   int threads = 0;
 };
