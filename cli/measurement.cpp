@@ -1,5 +1,7 @@
 #include "cli/measurement.hpp"
 
+#include <algorithm>
+
 #include "acquisition/clean.hpp"
 #include "acquisition/files/read_scan.hpp"
 #include "acquisition/types/error.hpp"
@@ -39,10 +41,15 @@ Measurement read_measurement(const Recipe& recipe, const std::filesystem::path& 
   measurement.cloud = scan.cloud;
   measurement.points_nonfinite = scan.dropped_nonfinite;
   measurement.notes = scan.notes;
+  measurement.kept.assign(scan.cloud.size(), 1);
   if (!scan.is_mesh()) {  // a mesh was cleaned by the scanner's own software, and its triangles need every vertex
     Cleaned cleaned = clean(scan.cloud, clean_options(recipe, threads));
     measurement.points_outlier = cleaned.dropped_outliers;
     measurement.points_voxel = cleaned.dropped_by_voxel;
+    if (cleaned.dropped_by_voxel == 0) {  // thinning drops good points
+      std::fill(measurement.kept.begin(), measurement.kept.end(), char{0});
+      for (const std::int32_t i : cleaned.kept) measurement.kept[static_cast<std::size_t>(i)] = 1;
+    }
     scan.cloud = std::move(cleaned.cloud);
   }
   PrepareOptions options;

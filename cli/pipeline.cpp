@@ -148,6 +148,8 @@ Processed process(const Recipe& recipe, const Drawing& drawing, Measurement& mea
   stage("measuring deviations");
   record.deviation_mm = signed_deviation_mm(cad.surface, found.rigid.scan_from_cad, measurement.cloud.points_mm,
                                             kDeviationReachMm, threads);
+  for (std::size_t i = 0; i < record.deviation_mm.size(); ++i)
+    if (!measurement.kept[i]) record.deviation_mm[i] = std::numeric_limits<float>::quiet_NaN();
   judge_results(cad, found, record);
   return processed;
 }

@@ -29,7 +29,7 @@ ContourError error_along(const CadModel& cad, std::size_t c, const Registration&
     const SplineRow row = edge.spline.at(s_mm);
     error.arc_mm.push_back(s_mm);
     error.rigid_mm.push_back(seen ? rigid_gap_mm(cad, c, found, s_mm) : kMissing);
-    error.across_mm.push_back(seen ? row.dot(edge.across) : kMissing);
+    error.across_mm.push_back(seen ? -row.dot(edge.across) : kMissing);  // positive towards the void
     error.normal_mm.push_back(seen ? row.dot(edge.height) : kMissing);
   }
   return error;
