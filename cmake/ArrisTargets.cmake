@@ -15,10 +15,6 @@ if(ARRIS_SANITIZE)
     add_compile_definitions(ARRIS_PARALLEL_JTHREAD) # Debian's TBB is not instrumented
   endif()
 endif()
-if(ARRIS_FUZZ)
-  add_compile_options(-fsanitize=fuzzer-no-link)
-  add_custom_target(arris_fuzz_all)
-endif()
 
 find_program(ARRIS_CCACHE ccache)
 if(ARRIS_CCACHE)
@@ -74,15 +70,4 @@ function(_arris_discover name filter label timeout)
   endif()
   gtest_discover_tests(test_${name} TEST_PREFIX "${name}." TEST_FILTER "${filter}" DISCOVERY_TIMEOUT 60
                        PROPERTIES LABELS "${label}" TIMEOUT ${timeout} COST ${cost})
-endfunction()
-
-# arris_fuzz(name SOURCE LINKS ..): a libFuzzer program under fuzz/ of the build folder (preset fuzz, clang).
-function(arris_fuzz name source)
-  cmake_parse_arguments(F "" "" "LINKS" ${ARGN})
-  add_executable(fuzz_${name} ${source})
-  target_include_directories(fuzz_${name} PRIVATE ${PROJECT_SOURCE_DIR})
-  target_link_libraries(fuzz_${name} PRIVATE ${F_LINKS} arris_warnings)
-  target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
-  set_target_properties(fuzz_${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/fuzz)
-  add_dependencies(arris_fuzz_all fuzz_${name})
 endfunction()
