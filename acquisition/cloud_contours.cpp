@@ -16,6 +16,7 @@ constexpr double kBesideCos = 0.7;     // normals of points of one smooth face, 
 constexpr double kJoinSpacings = 4.0;  // ends of broken chains no farther apart than this belong together,
 constexpr double kFarJoinSpacings = 12.0;  // or than this if both chains are long beside the gap
 constexpr double kFarJoinRatio = 0.1;
+constexpr double kBendChords = 8.0;         // the edge of a cloud is ragged by a third of a spacing and more
 constexpr std::size_t kFewestClosed = 8;    // a chain of fewer points is not closed
 constexpr double kShortestSpacings = 20.0;  // shorter loops are voids of the sampling
 constexpr std::size_t kChunk = 256;
@@ -352,7 +353,7 @@ ContourSet cloud_contours(std::span<const Eigen::Vector3d> points_mm, const Near
   std::vector<FoundContour> loops = Walk(points_mm, surface.normals, std::move(nodes)).loops();
   loops = joined(std::move(loops), planes.spacing_median_mm);
   std::erase_if(loops, [](const FoundContour& loop) { return loop.contour.points_mm.size() < 2; });
-  return measured(std::move(loops), shortest_mm);
+  return measured(std::move(loops), shortest_mm, kBendChords);
 }
 
 }  // namespace arris

@@ -47,7 +47,8 @@ struct ContourSet {
 /// sharper than sharp_edge_rad, and each region's border is chained the same way; of two regions that share a
 /// whole loop the larger keeps it (a hole's rim belongs to the face, not to its wall). Vertices must be
 /// welded (read_mesh does). Normals: the faces of the region beside the edge. Orientation: material on the
-/// left, seen from the air side. Edges with more than two faces are skipped and named in `notes`.
+/// left, seen from the air side. No contours, but named in `notes`: edges of more than two faces, and cracks
+/// without width between faces that do not share their corners; neither makes a closed mesh an open one.
 [[nodiscard]] ContourSet mesh_contours(const TriangleMesh& mesh, const ContourOptions& options);
 
 /// Contours of a scan that is a mesh: as an open mesh, after the triangles that a scanner's software

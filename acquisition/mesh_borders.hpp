@@ -10,12 +10,17 @@ namespace arris {
 
 /// Which triangle lies across each side of each triangle. Side k runs from corner k to corner k + 1.
 struct MeshAdjacency {
-  static constexpr std::int32_t kNone = -1;      ///< one-face edge
+  static constexpr std::int32_t kNone = -1;     ///< one-face edge
+  static constexpr std::int32_t kCrowded = -2;  ///< edge of more than two faces, or of two that wind alike
   std::vector<std::array<std::int32_t, 3>> across;
-  std::size_t crowded_edges = 0;                 ///< edges of more than two faces, or of two faces that wind alike
+  std::size_t crowded_edges = 0;
+
+  [[nodiscard]] std::int32_t at(std::int32_t triangle, int side) const {
+    return across[static_cast<std::size_t>(triangle)][static_cast<std::size_t>(side)];
+  }
 };
 
-/// Cost O(n log n). A crowded edge counts as a border on all its faces.
+/// Cost O(n log n).
 [[nodiscard]] MeshAdjacency adjacency(const TriangleMesh& mesh);
 
 /// One directed border edge: side `side` of triangle `triangle`.
@@ -24,15 +29,22 @@ struct BorderEdge {
   int side = 0;
 };
 
-/// Chains the border edges of a mesh to directed loops, turning around the fan of faces at each vertex.
-/// is_border(triangle, side) decides what a border is; material lies on the left of each edge seen from outside.
+/// Cuts a loop that comes through a vertex twice (two holes that touch there) into loops that do not.
+void append_simple_loops(const TriangleMesh& mesh, const std::vector<BorderEdge>& loop,
+                         std::vector<std::vector<BorderEdge>>& loops);
+
+/// Chains the border edges of a mesh to directed loops, turning around the fan of faces at each vertex:
+/// pieces that touch at a vertex stay apart, and so do holes. is_border(triangle, side) decides what a border
+/// is, a side without one neighbour always; material lies on the left of each edge seen from outside.
 template <class IsBorder>
 [[nodiscard]] std::vector<std::vector<BorderEdge>> border_loops(const TriangleMesh& mesh,
                                                                 const MeshAdjacency& neighbours,
                                                                 const IsBorder& is_border) {
   std::vector<std::vector<BorderEdge>> loops;
   std::vector<std::array<char, 3>> done(mesh.triangles.size(), {0, 0, 0});
-  const auto corner = [&](std::int32_t t, int k) { return mesh.triangles[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)]; };
+  const auto corner = [&](std::int32_t t, int k) {
+    return mesh.triangles[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)];
+  };
   for (std::size_t start = 0; start < mesh.triangles.size(); ++start)
     for (int side = 0; side < 3; ++side) {
       const std::int32_t first = static_cast<std::int32_t>(start);
@@ -52,7 +64,7 @@ template <class IsBorder>
         }
         edge = {t, k};
       }
-      loops.push_back(std::move(loop));
+      append_simple_loops(mesh, loop, loops);
     }
   return loops;
 }

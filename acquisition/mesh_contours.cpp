@@ -10,6 +10,10 @@
 namespace arris {
 namespace {
 
+constexpr double kBendChords = 3.0;
+constexpr double kFlatTriangle = 1e-6;  // height over longest side, of a triangle without a normal of its own
+constexpr double kCrackWidth = 1e-4;    // mean width over length, of a loop that is a crack
+
 Eigen::Vector3d area_vector(const TriangleMesh& mesh, std::size_t t) {
   const auto& corner = mesh.triangles[t];
   const Eigen::Vector3d& a = mesh.vertices_mm[static_cast<std::size_t>(corner[0])];
@@ -17,54 +21,129 @@ Eigen::Vector3d area_vector(const TriangleMesh& mesh, std::size_t t) {
       .cross(mesh.vertices_mm[static_cast<std::size_t>(corner[2])] - a);
 }
 
+double side_mm(const TriangleMesh& mesh, std::size_t t, std::size_t side) {
+  const auto& corner = mesh.triangles[t];
+  return (mesh.vertices_mm[static_cast<std::size_t>(corner[(side + 1) % 3])] -
+          mesh.vertices_mm[static_cast<std::size_t>(corner[side])])
+      .norm();
+}
+
+std::size_t longest_side(const TriangleMesh& mesh, std::size_t t) {
+  std::size_t longest = 0;
+  for (const std::size_t side : {1, 2})
+    if (side_mm(mesh, t, side) > side_mm(mesh, t, longest)) longest = side;
+  return longest;
+}
+
 std::int32_t start_vertex(const TriangleMesh& mesh, const BorderEdge& edge) {
   return mesh.triangles[static_cast<std::size_t>(edge.triangle)][static_cast<std::size_t>(edge.side)];
 }
 
+/// Unit normals. A triangle that is flat to a line (tessellators make them) takes the normal of the face
+/// across its longest side, so that it belongs to that face.
+std::vector<Eigen::Vector3d> face_normals(const TriangleMesh& mesh, const MeshAdjacency& neighbours) {
+  std::vector<Eigen::Vector3d> normals;
+  std::vector<std::size_t> flat;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Eigen::Vector3d area_mm2 = area_vector(mesh, t);
+    const double longest_mm = side_mm(mesh, t, longest_side(mesh, t));
+    const bool is_flat = !(area_mm2.norm() > kFlatTriangle * longest_mm * longest_mm);
+    normals.push_back(is_flat ? Eigen::Vector3d::Zero() : Eigen::Vector3d(area_mm2.normalized()));
+    if (is_flat) flat.push_back(t);
+  }
+  for (std::size_t before = flat.size() + 1; !flat.empty() && flat.size() < before;) {
+    before = flat.size();
+    std::erase_if(flat, [&](std::size_t t) {
+      const std::int32_t other = neighbours.across[t][longest_side(mesh, t)];
+      if (other >= 0) normals[t] = normals[static_cast<std::size_t>(other)];
+      return !normals[t].isZero();
+    });
+  }
+  return normals;
+}
+
+/// A mesh with what every search for contours needs.
+struct Borders {
+  const TriangleMesh& mesh;
+  MeshAdjacency neighbours;
+  std::vector<Eigen::Vector3d> normals;
+  std::size_t cracks = 0;  // loops left out
+
+  explicit Borders(const TriangleMesh& of)
+      : mesh(of), neighbours(adjacency(of)), normals(face_normals(of, neighbours)) {}
+};
+
 /// A loop's points, each with the mean normal of the faces of the two border edges that meet there.
-FoundContour contour_of(const TriangleMesh& mesh, const std::vector<BorderEdge>& loop, const std::string& source) {
+FoundContour contour_of(const Borders& borders, const std::vector<BorderEdge>& loop,
+                        const std::string& source) {
   FoundContour found;
   found.contour.closed = true;
   found.contour.source = source;
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const BorderEdge& before = loop[(i + loop.size() - 1) % loop.size()];
-    found.contour.points_mm.push_back(mesh.vertices_mm[static_cast<std::size_t>(start_vertex(mesh, loop[i]))]);
-    const Eigen::Vector3d normal = area_vector(mesh, static_cast<std::size_t>(loop[i].triangle)).normalized() +
-                                   area_vector(mesh, static_cast<std::size_t>(before.triangle)).normalized();
-    found.contour.normals.push_back(normal.normalized());
+    found.contour.points_mm.push_back(
+        borders.mesh.vertices_mm[static_cast<std::size_t>(start_vertex(borders.mesh, loop[i]))]);
+    found.contour.normals.push_back((borders.normals[static_cast<std::size_t>(loop[i].triangle)] +
+                                     borders.normals[static_cast<std::size_t>(before.triangle)])
+                                        .normalized());
   }
   return found;
 }
 
-bool is_sharp(const TriangleMesh& mesh, std::int32_t a, std::int32_t b, double sharp_edge_rad) {
-  const Eigen::Vector3d na = area_vector(mesh, static_cast<std::size_t>(a)).normalized();
-  const Eigen::Vector3d nb = area_vector(mesh, static_cast<std::size_t>(b)).normalized();
-  return na.dot(nb) < std::cos(sharp_edge_rad);
+/// Whether the loop has no width: faces that do not share their corners (a T-junction) leave such.
+bool is_crack(const TriangleMesh& mesh, const std::vector<BorderEdge>& loop) {
+  Eigen::Vector3d mean_mm = Eigen::Vector3d::Zero();
+  for (const BorderEdge& edge : loop)
+    mean_mm += mesh.vertices_mm[static_cast<std::size_t>(start_vertex(mesh, edge))] /
+               static_cast<double>(loop.size());
+  double area_mm2 = 0.0, length_mm = 0.0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const auto& a_mm = mesh.vertices_mm[static_cast<std::size_t>(start_vertex(mesh, loop[i]))];
+    const auto& b_mm =
+        mesh.vertices_mm[static_cast<std::size_t>(start_vertex(mesh, loop[(i + 1) % loop.size()]))];
+    area_mm2 += 0.5 * (a_mm - mean_mm).cross(b_mm - mean_mm).norm();
+    length_mm += (b_mm - a_mm).norm();
+  }
+  return 2.0 * area_mm2 <= kCrackWidth * length_mm * length_mm;
+}
+
+/// Loops of one-face edges. Crowded edges end faces as well, but a loop of nothing else is left out.
+std::vector<std::vector<BorderEdge>> open_loops(Borders& borders) {
+  auto loops = border_loops(borders.mesh, borders.neighbours,
+                            [&](std::int32_t t, int k) { return borders.neighbours.at(t, k) < 0; });
+  std::erase_if(loops, [&](const auto& loop) {
+    return std::none_of(loop.begin(), loop.end(), [&](const BorderEdge& edge) {
+      return borders.neighbours.at(edge.triangle, edge.side) == MeshAdjacency::kNone;
+    });
+  });
+  borders.cracks += std::erase_if(loops, [&](const auto& loop) { return is_crack(borders.mesh, loop); });
+  return loops;
 }
 
 /// Smooth regions: triangles joined across every side that is not sharp.
 struct Regions {
-  std::vector<int> of;          // region of each triangle
+  std::vector<int> of;  // region of each triangle
   std::vector<double> area_mm2;
 };
 
-Regions smooth_regions(const TriangleMesh& mesh, const MeshAdjacency& neighbours, double sharp_edge_rad) {
+Regions smooth_regions(const Borders& borders, double sharp_edge_rad) {
+  const double sharp_cos = std::cos(sharp_edge_rad);
   Regions regions;
-  regions.of.assign(mesh.triangles.size(), -1);
+  regions.of.assign(borders.mesh.triangles.size(), -1);
   std::vector<std::int32_t> stack;
-  for (std::size_t seed = 0; seed < mesh.triangles.size(); ++seed) {
+  for (std::size_t seed = 0; seed < regions.of.size(); ++seed) {
     if (regions.of[seed] >= 0) continue;
     const int region = static_cast<int>(regions.area_mm2.size());
     regions.area_mm2.push_back(0.0);
     regions.of[seed] = region;
     stack.push_back(static_cast<std::int32_t>(seed));
     while (!stack.empty()) {
-      const std::int32_t t = stack.back();
+      const auto t = static_cast<std::size_t>(stack.back());
       stack.pop_back();
-      regions.area_mm2.back() += 0.5 * area_vector(mesh, static_cast<std::size_t>(t)).norm();
-      for (const std::int32_t next : neighbours.across[static_cast<std::size_t>(t)]) {
+      regions.area_mm2.back() += 0.5 * area_vector(borders.mesh, t).norm();
+      for (const std::int32_t next : borders.neighbours.across[t]) {
         if (next < 0 || regions.of[static_cast<std::size_t>(next)] >= 0) continue;
-        if (is_sharp(mesh, t, next, sharp_edge_rad)) continue;
+        if (borders.normals[t].dot(borders.normals[static_cast<std::size_t>(next)]) < sharp_cos) continue;
         regions.of[static_cast<std::size_t>(next)] = region;
         stack.push_back(next);
       }
@@ -73,71 +152,58 @@ Regions smooth_regions(const TriangleMesh& mesh, const MeshAdjacency& neighbours
   return regions;
 }
 
-std::vector<std::vector<BorderEdge>> open_loops(const TriangleMesh& mesh, const MeshAdjacency& neighbours) {
-  return border_loops(mesh, neighbours, [&](std::int32_t t, int k) {
-    return neighbours.across[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)] < 0;
-  });
-}
-
-std::vector<FoundContour> open_contours(const TriangleMesh& mesh, const MeshAdjacency& neighbours) {
-  std::vector<FoundContour> contours;
-  for (const auto& loop : open_loops(mesh, neighbours)) contours.push_back(contour_of(mesh, loop, "boundary"));
-  return contours;
-}
-
-std::vector<FoundContour> sharp_contours(const TriangleMesh& mesh, const MeshAdjacency& neighbours,
-                                         double sharp_edge_rad) {
-  const Regions regions = smooth_regions(mesh, neighbours, sharp_edge_rad);
+std::vector<FoundContour> sharp_contours(const Borders& borders, double sharp_edge_rad) {
+  const Regions regions = smooth_regions(borders, sharp_edge_rad);
+  const auto region_of = [&](std::int32_t t) { return regions.of[static_cast<std::size_t>(t)]; };
   const auto is_border = [&](std::int32_t t, int k) {
-    const std::int32_t other = neighbours.across[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)];
-    return other < 0 || is_sharp(mesh, t, other, sharp_edge_rad);
+    const std::int32_t other = borders.neighbours.at(t, k);
+    return other < 0 || region_of(t) != region_of(other);
   };
   // Two regions that share a whole loop: the larger one keeps it.
   std::map<std::vector<std::int32_t>, std::pair<double, std::vector<BorderEdge>>> kept;
-  for (auto& loop : border_loops(mesh, neighbours, is_border)) {
+  for (auto& loop : border_loops(borders.mesh, borders.neighbours, is_border)) {
+    if (is_crack(borders.mesh, loop)) continue;
     std::vector<std::int32_t> vertices;
-    for (const BorderEdge& edge : loop) vertices.push_back(start_vertex(mesh, edge));
+    for (const BorderEdge& edge : loop) vertices.push_back(start_vertex(borders.mesh, edge));
     std::sort(vertices.begin(), vertices.end());
-    const double area_mm2 =
-        regions.area_mm2[static_cast<std::size_t>(regions.of[static_cast<std::size_t>(loop.front().triangle)])];
+    const double area_mm2 = regions.area_mm2[static_cast<std::size_t>(region_of(loop.front().triangle))];
     auto& entry = kept[std::move(vertices)];
     if (area_mm2 > entry.first) entry = {area_mm2, std::move(loop)};
   }
   std::vector<FoundContour> contours;
-  for (const auto& [vertices, entry] : kept) contours.push_back(contour_of(mesh, entry.second, "sharp edge"));
+  for (const auto& [vertices, entry] : kept)
+    contours.push_back(contour_of(borders, entry.second, "sharp edge"));
   return contours;
+}
+
+void note_oddities(const Borders& borders, ContourSet& set) {
+  if (borders.neighbours.crowded_edges > 0)
+    set.notes.push_back(std::to_string(borders.neighbours.crowded_edges) +
+                        " edges have more than two faces, or two that wind alike; they are no contours");
+  if (borders.cracks > 0)
+    set.notes.push_back(std::to_string(borders.cracks) +
+                        " cracks between faces that do not share their corners are no contours");
 }
 
 double median_edge_mm(const TriangleMesh& mesh) {
   std::vector<double> edges;
-  for (const auto& t : mesh.triangles)
-    for (std::size_t k = 0; k < 3; ++k)
-      edges.push_back((mesh.vertices_mm[static_cast<std::size_t>(t[k])] -
-                       mesh.vertices_mm[static_cast<std::size_t>(t[(k + 1) % 3])]).norm());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) edges.push_back(side_mm(mesh, t, k));
   if (edges.empty()) return 0.0;
   const auto middle = edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 2);
   std::nth_element(edges.begin(), middle, edges.end());
   return *middle;
 }
 
-bool is_outsized(const TriangleMesh& mesh, const std::array<std::int32_t, 3>& t, double longest_mm) {
-  for (std::size_t k = 0; k < 3; ++k)
-    if ((mesh.vertices_mm[static_cast<std::size_t>(t[k])] - mesh.vertices_mm[static_cast<std::size_t>(t[(k + 1) % 3])])
-            .norm() > longest_mm)
-      return true;
-  return false;
-}
-
 }  // namespace
 
 ContourSet mesh_contours(const TriangleMesh& mesh, const ContourOptions& options) {
-  const MeshAdjacency neighbours = adjacency(mesh);
-  std::vector<FoundContour> loops = open_contours(mesh, neighbours);
-  if (loops.empty()) loops = sharp_contours(mesh, neighbours, options.sharp_edge_rad);
-  ContourSet set = measured(std::move(loops), options.min_length_mm);
-  if (neighbours.crowded_edges > 0)
-    set.notes.push_back(std::to_string(neighbours.crowded_edges) +
-                        " edges have more than two faces, or two that wind alike; they count as borders");
+  Borders borders(mesh);
+  std::vector<FoundContour> contours;
+  for (const auto& loop : open_loops(borders)) contours.push_back(contour_of(borders, loop, "boundary"));
+  if (contours.empty()) contours = sharp_contours(borders, options.sharp_edge_rad);
+  ContourSet set = measured(std::move(contours), options.min_length_mm, kBendChords);
+  note_oddities(borders, set);
   return set;
 }
 
@@ -145,27 +211,34 @@ ContourSet scan_mesh_contours(const Scan& scan, const ContourOptions& options) {
   TriangleMesh mesh;
   mesh.vertices_mm = local_points_mm(scan.cloud);
   mesh.triangles = scan.triangles;
-  const double longest_mm = options.outsized_edge_ratio * median_edge_mm(mesh);
-  TriangleMesh trimmed = mesh;
-  std::erase_if(trimmed.triangles, [&](const auto& t) { return is_outsized(mesh, t, longest_mm); });
+  const double median_mm = median_edge_mm(mesh);
+  TriangleMesh trimmed;
+  trimmed.vertices_mm = mesh.vertices_mm;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (side_mm(mesh, t, longest_side(mesh, t)) <= options.outsized_edge_ratio * median_mm)
+      trimmed.triangles.push_back(mesh.triangles[t]);
   const std::size_t outsized = mesh.triangles.size() - trimmed.triangles.size();
-  if (trimmed.triangles.size() < mesh.triangles.size() / 2) return mesh_contours(mesh, options);  // a coarse mesh
+  if (trimmed.triangles.size() < mesh.triangles.size() / 2)
+    return mesh_contours(mesh, options);  // a coarse mesh
+  Borders whole(mesh), borders(trimmed);
   std::vector<char> was_border(mesh.vertices_mm.size(), 0);
-  for (const auto& loop : open_loops(mesh, adjacency(mesh)))
+  for (const auto& loop : open_loops(whole))
     for (const BorderEdge& edge : loop) was_border[static_cast<std::size_t>(start_vertex(mesh, edge))] = 1;
   std::vector<FoundContour> contours;
-  for (const auto& loop : open_loops(trimmed, adjacency(trimmed))) {
-    contours.push_back(contour_of(trimmed, loop, "boundary"));
+  for (const auto& loop : open_loops(borders)) {
+    contours.push_back(contour_of(borders, loop, "boundary"));
     const auto old = std::count_if(loop.begin(), loop.end(), [&](const BorderEdge& edge) {
       return was_border[static_cast<std::size_t>(start_vertex(trimmed, edge))] != 0;
     });
     if (2 * static_cast<std::size_t>(old) < loop.size())
       contours.back().note = "filled hole: the scanner's software stretched triangles over it";
   }
-  const double shortest_mm = options.min_length_mm > 0.0 ? options.min_length_mm : 10.0 * median_edge_mm(mesh);
-  ContourSet set = measured(std::move(contours), shortest_mm);
+  const double shortest_mm = options.min_length_mm > 0.0 ? options.min_length_mm : 10.0 * median_mm;
+  ContourSet set = measured(std::move(contours), shortest_mm, kBendChords);
   if (outsized > 0)
-    set.notes.push_back(std::to_string(outsized) + " outsized triangles fill holes of the scan and are left out");
+    set.notes.push_back(std::to_string(outsized) +
+                        " outsized triangles fill holes of the scan and are left out");
+  note_oddities(borders, set);
   return set;
 }
 

@@ -109,6 +109,9 @@ TEST(CloudContours, FindsARoundedRectangleAndItsBend) {
     const ContourSet set = contours_of(sampled(plate, sampling));
     EXPECT_EQ(set.found.size(), 2U);
     expect_shows(set, plate.holes[0], true);
+    // A ragged edge shows its bend to within a factor of two.
+    EXPECT_GT(set.found.back().min_bend_radius_mm, 0.5 * 12.0);
+    EXPECT_LT(set.found.back().min_bend_radius_mm, 2.0 * 12.0);
   }
 }
 
