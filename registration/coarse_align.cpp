@@ -1,6 +1,7 @@
 #include "registration/coarse_align.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -19,6 +20,9 @@ constexpr std::size_t kRefined = 4;            // candidates a hypothesis that a
 constexpr double kFreeEigenvalueRatio = 1e-4;  // methods: slippage, Gelfand and Guibas 2003
 constexpr double kEdgeKept = 0.75, kSurfaceKept = 0.9;
 constexpr double kMirrorBetterRatio = 0.5;
+constexpr double kExtentsAgree[] = {0.4, 15.0};  // of scan and contour: no wrong unit is needed to explain them
+constexpr double kScaledExtentMost = 6.0;         // and in another unit only this far from the contour's
+constexpr std::size_t kLongestLoops = 3;
 constexpr double kUnitRatios[] = {25.4, 1000.0, 10.0, 1.0 / 25.4, 1.0 / 1000.0, 0.1};
 
 template <class T>
@@ -178,14 +182,30 @@ class Search {
   double size_mm_ = 0.0, cap_mm_ = 0.0;
 };
 
-/// The unit in which the loops would fit, when no loop fits as stated.
+/// Corner to corner of the box around the points; mm.
+double extent_mm(const std::vector<Eigen::Vector3d>& points_mm) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& p : points_mm) box.extend(p);
+  return box.isEmpty() ? 0.0 : box.diagonal().norm();
+}
+
+/// The unit in which a loop would fit, when none fits as stated and the scan's extent is not that of such a part
+/// either: a scan of many small loops has one of any length.
 double unit_that_fits(const CadModel& cad, const ScanModel& scan) {
+  const double scan_mm = extent_mm(scan.points_mm);
+  for (const Curve& curve : cad.contours) {
+    const double part_mm = extent_mm(curve.contour().points_mm);
+    if (scan_mm > kExtentsAgree[0] * part_mm && scan_mm < kExtentsAgree[1] * part_mm) return 1.0;
+  }
   for (const double ratio : kUnitRatios)
-    for (const Curve& curve : cad.contours)
-      for (const Contour& loop : scan.loops) {
-        const double scaled = length_mm(loop) * ratio / curve.length_mm();
-        if (loop.closed && scaled > 0.8 && scaled < 1.25) return ratio;
+    for (const Curve& curve : cad.contours) {
+      const double scaled_extent = scan_mm * ratio / extent_mm(curve.contour().points_mm);
+      if (scaled_extent < kExtentsAgree[0] || scaled_extent > kScaledExtentMost) continue;
+      for (std::size_t l = 0; l < std::min(kLongestLoops, scan.loops.size()); ++l) {
+        const double scaled = length_mm(scan.loops[l]) * ratio / curve.length_mm();
+        if (scan.loops[l].closed && scaled > 0.8 && scaled < 1.25) return ratio;
       }
+    }
   return 1.0;
 }
 
