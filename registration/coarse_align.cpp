@@ -23,7 +23,8 @@ constexpr double kMirrorBetterRatio = 0.5;
 constexpr double kExtentsAgree[] = {0.4, 15.0};  // of scan and contour: no wrong unit is needed to explain them
 constexpr double kScaledExtentMost = 6.0;         // and in another unit only this far from the contour's
 constexpr std::size_t kLongestLoops = 3;
-constexpr double kUnitRatios[] = {25.4, 1000.0, 10.0, 1.0 / 25.4, 1.0 / 1000.0, 0.1};
+constexpr double kInitialFitsRatio = 0.08;  // of the contour's size: a long side on a short one leaves more
+constexpr double kUnitRatios[] = {25.4, 1000.0, 1.0 / 25.4, 1.0 / 1000.0};
 
 template <class T>
 std::vector<T> every(const std::vector<T>& values, std::size_t count) {
@@ -209,6 +210,12 @@ double unit_that_fits(const CadModel& cad, const ScanModel& scan) {
   return 1.0;
 }
 
+std::string millimetres(double value_mm) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f", value_mm);
+  return text;
+}
+
 std::string percent(double ratio) {
   char text[32];
   std::snprintf(text, sizeof text, "%.0f %%", 100.0 * ratio);
@@ -237,6 +244,9 @@ CoarseAlignment from_initial(const ScanModel& scan, const CoarseAlignOptions& op
   const double turned = rotation_between_rad(*options.initial_scan_from_cad, best.scan_from_cad);
   if (turned > options.within_rad)
     result.reason = "the data turn the part by more than the initial pose allows (within_deg)";
+  else if (best.score_mm > kInitialFitsRatio * search.size_mm())
+    result.reason = "the initial pose does not fit: the scan's edge stays " + millimetres(best.score_mm) +
+                    " mm from the contours";
   return result;
 }
 
@@ -313,7 +323,7 @@ CoarseAlignment coarse_align(const CadModel& cad, const ScanModel& scan, const C
     break;
   }
   if (result.usable() && best.score_mm > 0.8 * search.cap_mm())
-    result.reason = "no pose fits: the best start leaves " + std::to_string(best.score_mm) + " mm";
+    result.reason = "no pose fits: the best start leaves " + millimetres(best.score_mm) + " mm";
   return result;
 }
 
