@@ -36,6 +36,10 @@ Points surface_points(const synthetic::Part& part, const Truth& truth) {
   Points points;
   for (const synthetic::AreaSample& sample : part.area_samples(spacing_mm))
     if (truth.nominal_distance_mm(sample.nominal_mm) < part.band_mm()) points.push_back(sample.nominal_mm);
+  const std::size_t wanted =
+      std::min(points.size(), part.scan_points());  // cells are smaller where the mesh is
+  for (std::size_t i = 0; i < wanted; ++i) points[i] = points[i * points.size() / wanted];
+  points.resize(wanted);
   return points;
 }
 

@@ -43,7 +43,7 @@ struct BenchPart {
   CadModel cad;
   std::vector<Eigen::Vector3d> path_mm;  ///< tips of the nominal path, CAD frame
   std::vector<Eigen::Vector3d>
-      surface_mm;  ///< the nominal face in the usual band, about as dense as the usual scan
+      surface_mm;  ///< the nominal face in the usual band, as many points as the usual scan
   int threads = 0;
 };
 

@@ -6,7 +6,7 @@
 namespace arris::bench {
 namespace {
 
-constexpr int kRounds = 200;
+constexpr int kRoundsToPoint = 200, kRoundsToPlane = 50;  // PCL's own default is 10
 constexpr double kSmallestChange = 1e-10;
 
 template <class Point>
@@ -25,8 +25,8 @@ typename pcl::PointCloud<Point>::Ptr cloud_of(std::span<const Eigen::Vector3d> p
 }
 
 template <class Icp>
-RigidMotion run(Icp& icp, const RigidMotion& start) {
-  icp.setMaximumIterations(kRounds);
+RigidMotion run(Icp& icp, int rounds, const RigidMotion& start) {
+  icp.setMaximumIterations(rounds);
   icp.setTransformationEpsilon(kSmallestChange);
   icp.setEuclideanFitnessEpsilon(kSmallestChange);
   typename Icp::PointCloudSource carried;
@@ -47,7 +47,7 @@ RigidMotion pcl_point_to_point(std::span<const Eigen::Vector3d> model_mm,
   pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ> icp;
   icp.setInputSource(cloud_of<pcl::PointXYZ>(model_mm));
   icp.setInputTarget(cloud_of<pcl::PointXYZ>(data_mm));
-  return run(icp, start_scan_from_cad);
+  return run(icp, kRoundsToPoint, start_scan_from_cad);
 }
 
 RigidMotion pcl_point_to_plane(std::span<const Eigen::Vector3d> model_mm,
@@ -61,7 +61,7 @@ RigidMotion pcl_point_to_plane(std::span<const Eigen::Vector3d> model_mm,
   icp.setInputSource(cloud_of<pcl::PointNormal>(model_mm));
   icp.setInputTarget(data);
   icp.setMaxCorrespondenceDistance(reach_mm);
-  return run(icp, start_scan_from_cad);
+  return run(icp, kRoundsToPlane, start_scan_from_cad);
 }
 
 }  // namespace arris::bench

@@ -7,16 +7,16 @@
 
 namespace arris::bench {
 
-// The peer: PCL's rigid registration, from a start pose, at most 200 rounds, stopping when a round changes
-// nothing.
+// The peer: PCL's rigid registration, from a start pose, stopping when a round changes nothing.
 
-/// pcl::IterativeClosestPoint: model points (CAD) to their nearest data points (scan). Returns scan_from_cad.
+/// pcl::IterativeClosestPoint: model points (CAD) to their nearest data points (scan), at most 200 rounds.
+/// Returns scan_from_cad.
 [[nodiscard]] RigidMotion pcl_point_to_point(std::span<const Eigen::Vector3d> model_mm,
                                              std::span<const Eigen::Vector3d> data_mm,
                                              const RigidMotion& start_scan_from_cad);
 
 /// pcl::IterativeClosestPointWithNormals: the same to the planes of the data points; pairs farther apart than
-/// reach_mm are left out.
+/// reach_mm are left out; at most 50 rounds.
 [[nodiscard]] RigidMotion pcl_point_to_plane(std::span<const Eigen::Vector3d> model_mm,
                                              std::span<const Eigen::Vector3d> data_mm,
                                              std::span<const Eigen::Vector3d> data_normals,
