@@ -147,12 +147,15 @@ Drawing read_drawing(const Recipe& recipe, bool want_path, int threads) {
   Drawing drawing;
   drawing.mesh = read_mesh(recipe.part.cad, unit_mm(recipe.part.cad_units));
   ContourSet loops = mesh_contours(drawing.mesh, contour_options(recipe, threads));
-  drawing.loops_found = loops.found.size();
   drawing.notes = loops.notes;
   const bool closed = loops.found.empty() || loops.found.front().contour.source != "boundary";
   if (closed && signed_volume_mm3(drawing.mesh) < 0.0) refuse_inverted(recipe, "a closed mesh of negative volume");
   const SurfaceQuery surface(drawing.mesh);
   drawing.accepted = accepted_contours(recipe, loops, surface);
+  for (const FoundContour& loop : loops.found)
+    if (std::none_of(drawing.accepted.begin(), drawing.accepted.end(),
+                     [&](const Contour& contour) { return contour.id == loop.contour.id; }))
+      drawing.others.push_back(loop.contour);
   if (!want_path) return drawing;
   drawing.path = read_path(recipe, drawing.accepted, drawing.notes);
   std::vector<Eigen::Vector3d> tips_mm, axes;

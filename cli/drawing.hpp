@@ -15,7 +15,7 @@ namespace arris {
 struct Drawing {
   TriangleMesh mesh;
   std::vector<Contour> accepted;   ///< loops of the mesh that the recipe accepts
-  std::size_t loops_found = 0;
+  std::vector<Contour> others;     ///< its loops that are not accepted
   ToolPath path;                   ///< empty when none was asked for
   std::vector<std::string> notes;
 };

@@ -122,7 +122,7 @@ Processed process(const Recipe& recipe, const Drawing& drawing, Measurement& mea
   describe_inputs(recipe, drawing, measurement, record);
 
   stage("aligning");
-  const CadModel cad = prepare_cad(drawing.mesh, drawing.accepted);
+  const CadModel cad = prepare_cad(drawing.mesh, drawing.accepted, drawing.others);
   ScanModel& scan = measurement.prepared.model;
   const Registration found = register_part(cad, scan, local_options(recipe, measurement.cloud.offset_mm, threads));
   refuse_wrong_input(found.coarse, recipe);

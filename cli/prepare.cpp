@@ -79,9 +79,11 @@ PreparedScan prepare_scan(const Scan& scan, const PrepareOptions& options) {
   return prepared;
 }
 
-CadModel prepare_cad(const TriangleMesh& mesh, const std::vector<Contour>& accepted) {
+CadModel prepare_cad(const TriangleMesh& mesh, const std::vector<Contour>& accepted,
+                     const std::vector<Contour>& others) {
   CadModel cad{SurfaceQuery(mesh), {}};
   for (const Contour& contour : accepted) cad.contours.emplace_back(contour);
+  for (const Contour& contour : others) cad.others.emplace_back(contour);
   return cad;
 }
 

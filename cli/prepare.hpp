@@ -30,6 +30,8 @@ struct PreparedScan {
 [[nodiscard]] PreparedScan prepare_scan(const Scan& scan, const PrepareOptions& options);
 
 /// A drawing ready for registration.
-[[nodiscard]] CadModel prepare_cad(const TriangleMesh& mesh, const std::vector<Contour>& accepted);
+///   others   contours of the drawing that are not followed
+[[nodiscard]] CadModel prepare_cad(const TriangleMesh& mesh, const std::vector<Contour>& accepted,
+                                   const std::vector<Contour>& others = {});
 
 }  // namespace arris

@@ -84,7 +84,7 @@ struct Recipe {
   struct Registration {
     std::string method = "subdivision";
     double min_seen_ratio = 0.6;
-    double max_unseen_mm = 150.0;
+    double max_unseen_mm = 100.0;
     Subdivision subdivision;
   };
   struct Tolerance {

@@ -19,6 +19,7 @@ constexpr std::size_t kEdgeSample = 120;
 constexpr std::size_t kRefined = 4;            // candidates a hypothesis that are refined
 constexpr double kFreeEigenvalueRatio = 1e-4;  // methods: slippage, Gelfand and Guibas 2003
 constexpr double kEdgeKept = 0.75, kSurfaceKept = 0.9;
+constexpr std::size_t kLoopSample = 12;
 constexpr double kMirrorBetterRatio = 0.5;
 constexpr double kExtentsAgree[] = {0.4, 15.0};  // of scan and contour: no wrong unit is needed to explain them
 constexpr double kScaledExtentMost = 6.0;         // and in another unit only this far from the contour's
@@ -110,7 +111,34 @@ class Search {
       surface2.push_back(agrees ? std::min(cap2, foot.distance_mm * foot.distance_mm) : cap2);
     }
     if (surface2.size() < 10) return cap_mm_;
-    return std::sqrt(trimmed_mean(edge2, kEdgeKept) + trimmed_mean(surface2, kSurfaceKept));
+    return std::sqrt(trimmed_mean(edge2, kEdgeKept) + trimmed_mean(surface2, kSurfaceKept) +
+                     stray_loops2(light, cad_from_scan));
+  }
+
+  /// Mean squared distance of the scan's loops from the CAD's contours, followed or not, without the worst loop (the
+  /// border of what was scanned): a second hole in the wrong place gives a wrong pose away.
+  double stray_loops2(const ScanModel& light, const RigidMotion& cad_from_scan) const {
+    if (cad_.others.empty()) return 0.0;
+    std::vector<double> loop2;
+    for (const Contour& loop : light.loops) {
+      const std::size_t stride = std::max<std::size_t>(1, loop.points_mm.size() / kLoopSample);
+      double sum = 0.0, count = 0.0;
+      for (std::size_t i = 0; i < loop.points_mm.size(); i += stride) {
+        const Eigen::Vector3d x = cad_from_scan * loop.points_mm[i];
+        double nearest_mm = cap_mm_;
+        for (const auto* curves : {&cad_.contours, &cad_.others})
+          for (const Curve& curve : *curves) nearest_mm = std::min(nearest_mm, curve.nearest(x).distance_mm);
+        sum += nearest_mm * nearest_mm;
+        count += 1.0;
+      }
+      loop2.push_back(sum / std::max(1.0, count));
+    }
+    if (loop2.size() < 2) return 0.0;
+    std::sort(loop2.begin(), loop2.end());
+    loop2.pop_back();
+    double mean = 0.0;
+    for (const double value : loop2) mean += value / static_cast<double>(loop2.size());
+    return mean;
   }
 
   /// The same scan with only the edge points of loops that run along the contours at a start pose.

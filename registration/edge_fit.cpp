@@ -288,6 +288,21 @@ bool EdgeFit::seen_at(double arc_mm) const {
   return seen[std::min(seen.size() - 1, static_cast<std::size_t>(std::max(0.0, bin)))] != 0;
 }
 
+double EdgeFit::to_seen_mm(double arc_mm, bool closed) const {
+  if (seen.empty() || seen_at(arc_mm)) return 0.0;
+  const double length_mm = bin_mm * static_cast<double>(seen.size());
+  double nearest_mm = length_mm;
+  for (std::size_t b = 0; b < seen.size(); ++b) {
+    if (!seen[b]) continue;
+    const double begin_mm = bin_mm * static_cast<double>(b);
+    for (const double turn_mm : {0.0, length_mm, -length_mm}) {
+      if (turn_mm != 0.0 && !closed) continue;
+      nearest_mm = std::min(nearest_mm, std::max(begin_mm + turn_mm - arc_mm, arc_mm - begin_mm - turn_mm - bin_mm));
+    }
+  }
+  return std::max(0.0, nearest_mm);
+}
+
 double EdgeFit::seen_ratio() const {
   if (seen.empty()) return 0.0;
   return static_cast<double>(std::count(seen.begin(), seen.end(), 1)) / static_cast<double>(seen.size());

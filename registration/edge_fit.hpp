@@ -36,6 +36,8 @@ struct EdgeFit {
   std::size_t points = 0;             ///< inliers of the height fit
 
   [[nodiscard]] bool seen_at(double arc_mm) const;
+  /// Arc length to the nearest place where the edge was seen; 0 where it was.
+  [[nodiscard]] double to_seen_mm(double arc_mm, bool closed) const;
   /// Share of the contour's length on which the edge was seen.
   [[nodiscard]] double seen_ratio() const;
 };

@@ -70,8 +70,10 @@ EdgeData sharpened(const CadModel& cad, const ScanModel& scan, const std::vector
   data.sigma_across_mm = std::max(0.05, kSharpenedSigmaRatio * scan.spacing_mm);
   for (std::size_t c = 0; c < contours.size(); ++c)
     along(cad.contours[c], [&](double s_mm) {
-      if (contours[c].edge.seen_at(s_mm))
-        data.points_mm.push_back(edge_point_mm(cad, c, contours[c].motion, contours[c].edge, s_mm));
+      if (!contours[c].edge.seen_at(s_mm)) return;
+      data.points_mm.push_back(edge_point_mm(cad, c, contours[c].motion, contours[c].edge, s_mm));
+      data.contour.push_back(c);
+      data.arc_mm.push_back(s_mm);
     });
   return data;
 }
@@ -205,9 +207,12 @@ void deform(const CadModel& cad, const ScanModel& scan, const RegistrationOption
     result.field = std::make_shared<RigidField>(rigid);
     return;
   }
+  std::vector<ContourMotion> earlier;
   for (int pass = 0; pass < kSharpeningPasses; ++pass) {
     const EdgeData edge = sharpened(cad, scan, result.contours);
-    result.contours = with_edges(cad, scan, subdivision_icp(cad, scan, edge, rigid, options.subdivision), options.edge);
+    std::vector<ContourMotion> moved = subdivision_icp(cad, scan, edge, rigid, options.subdivision, earlier);
+    earlier = moved;
+    result.contours = with_edges(cad, scan, std::move(moved), options.edge);
   }
   result.field = std::make_shared<SubdivisionField>(cad, result.contours, options.band_mm, options.follow_edge);
 }

@@ -27,7 +27,7 @@ struct RegistrationOptions {
   bool follow_edge = true;          ///< role `edge`
   double band_mm = 60.0;            ///< where the field speaks
   double min_seen_ratio = 0.6;      ///< of each contour's length; below it: refused
-  double max_unseen_mm = 150.0;     ///< longest stretch of contour without data; above it: refused
+  double max_unseen_mm = 100.0;     ///< longest stretch of contour without data; above it: refused
   int threads = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "registration/rigid_icp.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +16,8 @@ namespace {
 constexpr double kSurfaceCountsAsPoints = 100.0;  // correlated misfit: see icp_point_to_plane
 constexpr double kCosNormalsAgree = 0.5;          // correspondences need normals within 60 degrees
 constexpr double kAnneal = 0.7;                   // robust scale of the next round over this one
-constexpr double kDamping = 1e-4;                 // of the mean information: directions that nothing determines stay
+constexpr double kDamping = 1e-4;                 // of the largest eigenvalue
+constexpr double kFreeEigenvalueRatio = 1e-4;     // of the largest: a direction that the data leave free
 constexpr std::size_t kChunk = 256;
 
 double median_of(std::vector<double>& values) {
@@ -164,16 +166,25 @@ class PointToPlane {
     result.information = both.information;
   }
 
-  /// Moves cad_from_scan by one Gauss-Newton step; a weak prior leaves undetermined directions where they are.
+  /// Moves cad_from_scan by one damped Gauss-Newton step, but not along directions that the data leave free: there the
+  /// gradient is noise over nothing, and a circle would spin about its axis by degrees a round.
   double step(const Round& round) {
     NormalEquations both = round.surface;
     both += round.edge;
-    Eigen::Matrix<double, 6, 1> prior;
-    prior << Eigen::Vector3d::Constant(kDamping * both.information.topLeftCorner<3, 3>().trace()),
-        Eigen::Vector3d::Constant(kDamping * both.information.bottomRightCorner<3, 3>().trace());
-    const Eigen::Matrix<double, 6, 1> delta = both.solve(prior);
+    const double reach_mm =
+        std::sqrt(both.information.topLeftCorner<3, 3>().trace() / (2.0 * both.weight + 1e-12)) + 1e-6;
+    Eigen::Matrix<double, 6, 1> scale;  // a turn counts by what it moves
+    scale << Eigen::Vector3d::Constant(1.0 / reach_mm), Eigen::Vector3d::Ones();
+    const Eigen::Matrix<double, 6, 6> scaled = scale.asDiagonal() * both.information * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(scaled);
+    const Eigen::Matrix<double, 6, 1> gradient = eigen.eigenvectors().transpose() * scale.cwiseProduct(both.gradient);
+    Eigen::Matrix<double, 6, 1> along = Eigen::Matrix<double, 6, 1>::Zero();
+    const double largest = eigen.eigenvalues()[5];
+    for (int i = 0; i < 6; ++i)
+      if (eigen.eigenvalues()[i] > kFreeEigenvalueRatio * largest)
+        along[i] = -gradient[i] / (eigen.eigenvalues()[i] + kDamping * largest);
+    const Eigen::Matrix<double, 6, 1> delta = scale.cwiseProduct(eigen.eigenvectors() * along);
     cad_from_scan_ = motion_of(delta, pivot_) * cad_from_scan_;
-    const double reach_mm = std::sqrt(both.information.topLeftCorner<3, 3>().trace() / (2.0 * both.weight + 1e-12));
     return delta.tail<3>().norm() + delta.head<3>().norm() * reach_mm;
   }
 

@@ -16,6 +16,8 @@ struct CadModel {
   SurfaceQuery surface;
   std::vector<Curve> contours;  ///< accepted contours, each with normals; material on the left seen against them
 
+  std::vector<Curve> others = {};  ///< contours that are not followed; they tell poses apart
+
   /// Unit direction in the surface at s, across contour c, into the material: normal x tangent.
   [[nodiscard]] Eigen::Vector3d inward(std::size_t c, double arc_mm) const;
 };

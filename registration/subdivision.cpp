@@ -93,7 +93,10 @@ Subdivision::Subdivision(const Curve& curve, const SubdivisionOptions& options)
 double Subdivision::relative(const Segment& segment, double arc_mm) const {
   if (!closed_) return arc_mm;
   const double middle = 0.5 * (segment.reach_begin_mm + segment.reach_end_mm);
-  return middle + std::remainder(arc_mm - middle, length_mm_);
+  double apart = arc_mm - middle;
+  while (apart > 0.5 * length_mm_) apart -= length_mm_;
+  while (apart < -0.5 * length_mm_) apart += length_mm_;
+  return middle + apart;
 }
 
 std::vector<int> Subdivision::reaching(double arc_mm) const {

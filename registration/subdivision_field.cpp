@@ -6,6 +6,9 @@
 namespace arris {
 namespace {
 
+/// How much a part may bend between the two sides of a gap, beyond what its segments say; 1/mm.
+constexpr double kGapBendPerMm = 5e-4;
+
 double variance_at(const SplineRow& row, const Eigen::MatrixXd& covariance) {
   double variance = 0.0;
   for (std::size_t a = 0; a < 4; ++a)
@@ -57,8 +60,10 @@ MappedPoint SubdivisionField::map(const Eigen::Vector3d& p_cad_mm) const {
   if (follow_edge_) shift += row.dot(edge.across) * inward;
   mapped.p_scan_mm = motion * (foot.foot_mm + shift + turn * (p_cad_mm - foot.foot_mm));
   mapped.rotation_scan_from_cad = motion.linear() * turn;
-  mapped.sd_mm = {std::sqrt(variance_at(row, edge.height_covariance)),
-                  std::sqrt(variance_at(row, edge.across_covariance)), 0.0};
+  const double unseen_mm = edge.to_seen_mm(foot.arc_mm, curve.closed());
+  const double gap_mm = 0.5 * kGapBendPerMm * unseen_mm * unseen_mm;
+  mapped.sd_mm = {std::sqrt(variance_at(row, edge.height_covariance) + gap_mm * gap_mm),
+                  std::sqrt(variance_at(row, edge.across_covariance) + gap_mm * gap_mm), 0.0};
   mapped.sd_axis_rad = std::sqrt(variance_at(row, edge.tilt_covariance));
   mapped.from_data = edge.seen_at(foot.arc_mm);
   mapped.in_domain = foot.distance_mm <= band_mm_;

@@ -13,7 +13,7 @@ namespace arris {
 namespace {
 
 constexpr double kCosNormalsAgree = 0.5;    // correspondences need normals within 60 degrees
-constexpr double kAnneal = 0.7;             // robust scale of the next round over this one
+constexpr double kAnneal = 0.6;             // robust scale of the next round over this one
 constexpr double kScaleSigmas = 3.0;        // where annealing stops
 constexpr double kMisfitSigmaMm = 0.15;     // a rigid segment on a bending part: misfit along the normal
 constexpr double kCoveredRatio = 0.4;       // of a segment's arc bins, for its motion to count as data
@@ -37,7 +37,7 @@ double log_angle(const RigidMotion& motion, Eigen::Vector3d& turn) {
 class FootFit {
  public:
   FootFit(const CadModel& cad, std::size_t contour, const ScanModel& scan, const EdgeData& data,
-          const RigidMotion& rigid, const SubdivisionIcpOptions& options)
+          const RigidMotion& rigid, const SubdivisionIcpOptions& options, const ContourMotion* earlier)
       : cad_(cad), curve_(cad.contours[contour]), contour_(static_cast<int>(contour)), scan_(scan), data_(data),
         options_(options), subdivision_(curve_, options.subdivision) {
     SegmentFit start;
@@ -46,6 +46,10 @@ class FootFit {
     sigma_normal_mm_ = std::max(scan.noise_sigma_mm, kMisfitSigmaMm);
     choose_stability_points(rigid.inverse());
     start_scale_mm_ = start_scale_mm(rigid.inverse());
+    if (earlier != nullptr) {
+      fits_ = earlier->fits();
+      anneal_ = 0.0;
+    }
   }
 
   ContourMotion run() {
@@ -166,12 +170,9 @@ class FootFit {
     const double normal_weight = 1.0 / (sigma_normal_mm_ * sigma_normal_mm_);
     const double reach_mm = 3.0 * std::max(across_scale, scan_.spacing_mm);
     std::vector<double> segment_cost(fits_.size(), 0.0), segment_weight(fits_.size(), 0.0);
-    for (const Eigen::Vector3d& e : data_.points_mm) {
-      const int home = nearest_segment(e, current, reach_mm);
-      if (home < 0) continue;
-      const EdgePair place = pair_edge(cad_, current[static_cast<std::size_t>(home)] * e, reach_mm);
-      if (place.contour != contour_) continue;
-      for (const int index : subdivision_.reaching(place.foot.arc_mm)) {
+    for (std::size_t i = 0; i < data_.points_mm.size(); ++i) {
+      const Eigen::Vector3d& e = data_.points_mm[i];
+      for (const int index : segments_of(i, current, reach_mm)) {
         const std::size_t z = static_cast<std::size_t>(index);
         const EdgePair pair = pair_edge(cad_, current[z] * e, 2.0 * reach_mm);
         if (pair.contour != contour_) continue;
@@ -201,18 +202,18 @@ class FootFit {
     ++fits_[z].pairs;
   }
 
-  /// The segment under whose motion a scan point lies nearest the contour within that segment's reach.
-  int nearest_segment(const Eigen::Vector3d& e, const std::vector<RigidMotion>& current, double reach_mm) const {
-    // All motions are near each other: the first segment's foot tells the neighbourhood, a second look is exact.
-    const EdgePair first = pair_edge(cad_, current.front() * e, reach_mm + 60.0);
-    if (first.contour != contour_) return -1;
+  /// The segments that an edge point belongs to: by its known place, else by its foot under the motion of the segment
+  /// where the first segment's motion puts it (all motions are near each other).
+  std::vector<int> segments_of(std::size_t i, const std::vector<RigidMotion>& current, double reach_mm) const {
+    if (!data_.arc_mm.empty())
+      return static_cast<int>(data_.contour[i]) == contour_ ? subdivision_.reaching(data_.arc_mm[i]) : std::vector<int>{};
+    const Eigen::Vector3d& e = data_.points_mm[i];
+    const EdgePair first = pair_edge(cad_, current.front() * e, reach_mm + kFarthestStartMm);
+    if (first.contour != contour_) return {};
     const std::vector<int> candidates = subdivision_.reaching(first.foot.arc_mm);
-    if (candidates.empty()) return -1;
-    const std::size_t z = static_cast<std::size_t>(candidates.front());
-    const EdgePair second = pair_edge(cad_, current[z] * e, reach_mm);
-    if (second.contour != contour_) return -1;
-    const std::vector<int> home = subdivision_.reaching(second.foot.arc_mm);
-    return home.empty() ? -1 : home.front();
+    if (candidates.empty()) return {};
+    const EdgePair second = pair_edge(cad_, current[static_cast<std::size_t>(candidates.front())] * e, reach_mm);
+    return second.contour == contour_ ? subdivision_.reaching(second.foot.arc_mm) : std::vector<int>{};
   }
 
   void add_stability(std::size_t z, const RigidMotion& cad_from_scan, NormalEquations& system) const {
@@ -329,14 +330,16 @@ void SubdivisionIcpOptions::check() const {
 
 std::vector<ContourMotion> subdivision_icp(const CadModel& cad, const ScanModel& scan, const EdgeData& data,
                                            const RigidMotion& rigid_scan_from_cad,
-                                           const SubdivisionIcpOptions& options) {
+                                           const SubdivisionIcpOptions& options,
+                                           const std::vector<ContourMotion>& start) {
   options.check();
   std::vector<ContourMotion> motions;
   for (std::size_t c = 0; c < cad.contours.size(); ++c) {
     if (options.match == SegmentMatch::kPaper)
       motions.push_back(paper_fit(cad.contours[c], scan, data, rigid_scan_from_cad, options));
     else
-      motions.push_back(FootFit(cad, c, scan, data, rigid_scan_from_cad, options).run());
+      motions.push_back(
+          FootFit(cad, c, scan, data, rigid_scan_from_cad, options, start.empty() ? nullptr : &start[c]).run());
   }
   return motions;
 }

@@ -69,14 +69,18 @@ class ContourMotion {
 struct EdgeData {
   std::vector<Eigen::Vector3d> points_mm;  ///< scan frame
   double sigma_across_mm = 1.0;            ///< how far they scatter across the edge
+  std::vector<std::size_t> contour;        ///< of each point, where known (a sharpened edge); else empty
+  std::vector<double> arc_mm;              ///< and its place on that contour
 };
 
 /// Subdivision ICP of section 3 for every accepted contour, starting from one rigid motion.
 ///   data      scan edge points; scan gives the surface for the stability points
+///   start     motions of an earlier pass to begin with (empty: the rigid motion); then only the last rounds are run
 ///   returns   one ContourMotion a contour
 ///   cost      O(iterations * (edge points + stability points)); deterministic
 [[nodiscard]] std::vector<ContourMotion> subdivision_icp(const CadModel& cad, const ScanModel& scan,
                                                          const EdgeData& data, const RigidMotion& rigid_scan_from_cad,
-                                                         const SubdivisionIcpOptions& options);
+                                                         const SubdivisionIcpOptions& options,
+                                                         const std::vector<ContourMotion>& start = {});
 
 }  // namespace arris
