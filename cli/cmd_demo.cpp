@@ -19,7 +19,7 @@ constexpr const char* kMark = "about-this-demo.txt";
 constexpr const char* kAbout =
     "This folder was made by `arris demo`; the next one replaces it.\n\n"
     "A thin composite part was solved by finite elements: how it lies on its fixture, clamped and bent.\n"
-    "scan.ply was sampled from that, with noise, walls, strays and a gap, in an arbitrary pose.\n\n"
+    "scan.ply was sampled from that, with noise, walls, strays and a gap, turned on its fixture.\n\n"
     "recipe.toml    every choice for this part number; names the files below\n"
     "cad.stl        the drawing        contour.csv  its opening        path.csv  the tool path on the "
     "drawing\n"
@@ -53,14 +53,16 @@ fs::path fixtures_folder() {
                                        "set ARRIS_FIXTURES to the fixtures folder of the checkout"});
 }
 
-/// A scan as a shop would get it: noise, walls of the cut, strays, a gap, uneven density, any pose.
+/// A scan as a shop would get it: noise, walls of the cut, strays, a gap, uneven density, turned on its fixture.
 synthetic::SyntheticScan demo_scan(const synthetic::FePart& part) {
   synthetic::ScanOptions options;
-  options.points = 20000;
+  options.points = 60000;
   options.missing_ratio = 0.05;
   options.stray_ratio = 0.003;
   options.wall_ratio = 0.02;
   options.density_variation_ratio = 2.0;
+  options.scan_from_cad = RigidMotion(Eigen::Translation3d(-85.0, 40.0, 120.0) *
+                                      Eigen::AngleAxisd(0.6, Eigen::Vector3d(0.2, -0.3, 1.0).normalized()));
   return synthetic::sample_scan(part, options, kSeed);
 }
 
