@@ -1,0 +1,108 @@
+// The other commands on the same parts: inspect, contours with the operator's choice, info, the demo.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "tests/end_to_end/job.hpp"
+
+namespace arris {
+namespace {
+
+using nlohmann::json;
+using testing::Job;
+using testing::Ran;
+using testing::text_of;
+
+bool processed(const Ran& ran) {
+  return ran.code == 0 || ran.code == 4 || ran.code == 7;
+}
+
+/// Ids of the contours in `arris contours --json`, longest first.
+std::vector<int> longest_first(const json& listing) {
+  std::vector<std::pair<double, int>> loops;
+  for (const json& one : listing.at("contours"))
+    loops.emplace_back(-one.at("length_mm").get<double>(), one.at("id").get<int>());
+  std::sort(loops.begin(), loops.end());
+  std::vector<int> ids;
+  for (const auto& [length, id] : loops) ids.push_back(id);
+  return ids;
+}
+
+TEST(Inspect, JudgesWithoutAPath) {
+  const Job job("fe/porthole");
+  std::filesystem::remove(job.file("path.csv"));
+  std::filesystem::remove(job.file("cell.toml"));
+  job.put_scan("scan.ply", testing::fe_scan("porthole", testing::usual_options("porthole"), 61));
+  const Ran ran = job.arris("inspect recipe.toml --scan scan.ply --out out");
+  ASSERT_TRUE(processed(ran)) << ran.code << ran.err;
+  EXPECT_EQ(job.names("out"), testing::kRefusedFiles) << "no path and no program";
+}
+
+TEST(Inspect, DefaultOutputIsNamedAfterTheScan) {
+  const Job job("fe/sheet");
+  job.put_scan("part7.ply", testing::fe_scan("sheet", testing::usual_options("sheet"), 62));
+  ASSERT_TRUE(processed(job.arris("inspect recipe.toml --scan part7.ply --json >summary.json")));
+  EXPECT_TRUE(job.names().contains("part7.arris"));
+  EXPECT_TRUE(json::accept(text_of(job.file("summary.json")))) << text_of(job.file("summary.json"));
+  EXPECT_TRUE(json::accept(text_of(job.file("part7.arris/result.json"))));
+  EXPECT_TRUE(json::accept(text_of(job.file("part7.arris/run.json"))));
+}
+
+TEST(Contours, OperatorsChoiceIsTakenForItsScanAlone) {
+  const Job job("fe/porthole");
+  job.put_scan("scan.ply", testing::fe_scan("porthole", testing::usual_options("porthole"), 63));
+  job.put_scan("other.ply", testing::fe_scan("porthole", testing::usual_options("porthole"), 64));
+  const Ran listed = job.arris("contours scan.ply --recipe recipe.toml --json");
+  ASSERT_EQ(listed.code, 0) << listed.err;
+  ASSERT_TRUE(json::accept(listed.out)) << listed.out;
+  // A band of points round the opening has two borders: the opening's is the shorter, the band's the longer.
+  const std::vector<int> ids = longest_first(json::parse(listed.out));
+  ASSERT_GE(ids.size(), 2u) << listed.out;
+  const Ran accepted = job.arris("contours scan.ply --recipe recipe.toml --accept " + std::to_string(ids[1]) +
+                                 " --out contours.json --png contours.png");
+  ASSERT_EQ(accepted.code, 0) << accepted.err;
+  ASSERT_TRUE(json::accept(text_of(job.file("contours.json"))));
+
+  job.replace("recipe.toml", "validation = \"auto\"", "validation = \"operator\"");
+  const Ran ran = job.run("scan.ply", "out", "--contours contours.json");
+  EXPECT_TRUE(processed(ran)) << ran.code << ran.out << ran.err;
+  EXPECT_TRUE(job.names("out").contains("corrected.csv"));
+
+  const Ran refused = job.run("other.ply", "out2", "--contours contours.json");
+  EXPECT_EQ(refused.code, 3) << refused.err;
+  EXPECT_NE(refused.err.find("contours.json"), std::string::npos) << refused.err;
+  EXPECT_FALSE(job.names().contains("out2"));
+}
+
+TEST(Json, OfEveryCommandParses) {
+  const Job job("fe/sheet");
+  job.put_scan("scan.ply", testing::fe_scan("sheet", testing::usual_options("sheet"), 65));
+  for (const char* line :
+       {"info scan.ply --json", "info cad.stl --json", "contours cad.stl --json", "contours scan.ply --json",
+        "recipe check recipe.toml --json", "run recipe.toml --scan scan.ply --out out --json"}) {
+    const Ran ran = job.arris(line);
+    EXPECT_TRUE(processed(ran)) << line << ran.code << ran.err;
+    EXPECT_TRUE(json::accept(ran.out)) << line << "\n" << ran.out;
+  }
+  const json run = json::parse(job.arris("run recipe.toml --scan scan.ply --out out --force --json").out);
+  EXPECT_TRUE(run.is_object());
+  EXPECT_EQ(job.names("out"), testing::kAcceptedFiles) << "--force replaces a run's own folder";
+}
+
+TEST(Demo, EndsInToleranceWithAReport) {
+  const Job job("fe/sheet");
+  const Ran ran = job.arris("demo --out demo");
+  ASSERT_EQ(ran.code, 0) << ran.out << ran.err;
+  std::size_t reports = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(job.file("demo")))
+    if (entry.path().filename() == "report.html") {
+      ++reports;
+      EXPECT_GT(entry.file_size(), 10000u);
+      EXPECT_NE(ran.out.find("report.html"), std::string::npos) << ran.out;
+    }
+  EXPECT_EQ(reports, 1u);
+}
+
+}  // namespace
+}  // namespace arris
