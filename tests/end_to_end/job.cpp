@@ -83,8 +83,9 @@ std::string double_ply(const synthetic::SyntheticScan& scan, const Vector3d& shi
   text += "end_header\n";
   char line[240];
   for (std::size_t i = 0; i < scan.points_mm.size(); ++i) {
-    const Vector3d p = scan.points_mm[i] + shift_mm, &n = scan.normals[i];
-    std::snprintf(line, sizeof line, "%.6f %.6f %.6f %.7f %.7f %.7f\n", p.x(), p.y(), p.z(), n.x(), n.y(),
+    const Vector3d p = (scan.points_mm[i] * 1024.0).array().round().matrix() / 1024.0 + shift_mm;
+    const Vector3d& n = scan.normals[i];
+    std::snprintf(line, sizeof line, "%.10f %.10f %.10f %.7f %.7f %.7f\n", p.x(), p.y(), p.z(), n.x(), n.y(),
                   n.z());
     text += line;
   }

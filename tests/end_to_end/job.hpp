@@ -42,7 +42,8 @@ class Job {
 /// The number of points that goes with a finite-element part, and a little noise.
 [[nodiscard]] synthetic::ScanOptions usual_options(const std::string& part);
 
-/// The same points and normals as ASCII PLY in double, at p + shift.
+/// The same points and normals as ASCII PLY in double, at p + shift; rounded to 1/1024 mm before the shift,
+/// so that float32 about any sensible offset holds them exactly and the shift alone is tested.
 [[nodiscard]] std::string double_ply(const synthetic::SyntheticScan& scan, const Eigen::Vector3d& shift_mm);
 
 /// A CSV as a stranger would read it: one comment line at most, header, numbers and words split at commas.
