@@ -21,11 +21,8 @@ constexpr std::size_t kFewestClosed = 8;    // a chain of fewer points is not cl
 constexpr double kShortestSpacings = 20.0;  // shorter loops are voids of the sampling
 constexpr std::size_t kChunk = 256;
 constexpr double kLargestMismatch_rad = 0.5 * std::numbers::pi;  // between the disc's places at two points
+constexpr double kSureOverlap = 1e-9;                            // of arcs, against rounding
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-
-double positive_angle(double angle_rad) {
-  return angle_rad < 0.0 ? angle_rad + kTwoPi : angle_rad;
-}
 
 /// Largest angle between neighbours, seen in the tangent plane.
 double largest_gap_rad(const Eigen::Vector3d& p, const Eigen::Matrix3d& frame,
@@ -58,17 +55,43 @@ class TouchFinder {
               double disc_mm)
       : points_mm_(points_mm), normals_(normals), disc_mm_(disc_mm) {}
 
+  /// True only if no direction is free: each blocked arc overlaps the next one around. Without the sines of
+  /// touches_of(), which the few points that fail need.
+  bool is_enclosed(std::size_t i, const std::vector<std::int32_t>& near) {
+    const Eigen::Matrix3d frame = frame_with_z(normals_[i]);
+    around_.clear();
+    for (const std::int32_t index : near) {
+      const Eigen::Vector3d d = points_mm_[static_cast<std::size_t>(index)] - points_mm_[i];
+      const double x = frame.col(0).dot(d), y = frame.col(1).dot(d);
+      const double distance_mm = std::sqrt(x * x + y * y);
+      const double cosine = distance_mm / (2.0 * disc_mm_);
+      if (!(cosine > 0.0 && cosine < 1.0)) continue;
+      const double order = x / (std::abs(x) + std::abs(y));  // falls from 1 to -1 while the angle grows to pi
+      around_.push_back({y < 0.0 ? 2.0 + order : -order, x / distance_mm, y / distance_mm, cosine,
+                         std::sqrt(1.0 - cosine * cosine)});
+    }
+    std::sort(around_.begin(), around_.end(), [](const Arc& a, const Arc& b) { return a.order < b.order; });
+    for (std::size_t k = 0; k < around_.size(); ++k) {
+      const Arc &a = around_[k], &b = around_[(k + 1) % around_.size()];
+      const bool less_than_half_a_turn = a.x * b.y - a.y * b.x > 0.0;
+      const bool overlap = a.x * b.x + a.y * b.y > a.cosine * b.cosine - a.sine * b.sine + kSureOverlap;
+      if (!less_than_half_a_turn || !overlap) return false;
+    }
+    return around_.size() > 2;
+  }
+
   std::vector<Touch> touches_of(std::size_t i, const std::vector<std::int32_t>& near) {
     const Eigen::Matrix3d frame = frame_with_z(normals_[i]);
     blocked_.clear();
     for (const std::int32_t index : near) {
       const Eigen::Vector3d d = points_mm_[static_cast<std::size_t>(index)] - points_mm_[i];
       const double x = frame.col(0).dot(d), y = frame.col(1).dot(d);
-      const double distance_mm = std::hypot(x, y);
-      if (distance_mm <= 0.0 || distance_mm >= 2.0 * disc_mm_) continue;
-      const double half = std::acos(distance_mm / (2.0 * disc_mm_));
-      const double from = positive_angle(std::remainder(std::atan2(y, x) - half, kTwoPi));
-      blocked_.push_back({from, from + 2.0 * half, index});
+      const double ratio = std::sqrt(x * x + y * y) / (2.0 * disc_mm_);
+      if (!(ratio > 0.0 && ratio < 1.0)) continue;
+      const double half = std::acos(ratio);
+      const double from = std::atan2(y, x) - half;
+      const double positive = from < 0.0 ? from + kTwoPi : from;
+      blocked_.push_back({positive, positive + 2.0 * half, index});
     }
     std::sort(blocked_.begin(), blocked_.end(),
               [](const Blocked& a, const Blocked& b) { return a.from < b.from; });
@@ -96,10 +119,16 @@ class TouchFinder {
     return touches;
   }
 
+  /// Unit direction of a neighbour, with the cosine and sine of half the angle it blocks.
+  struct Arc {
+    double order, x, y, cosine, sine;
+  };
+
   std::span<const Eigen::Vector3d> points_mm_;
   const std::vector<Eigen::Vector3d>& normals_;
   double disc_mm_;
   std::vector<Blocked> blocked_;
+  std::vector<Arc> around_;
 };
 
 struct Node {
@@ -225,7 +254,7 @@ class Surroundings {
   /// The 12 nearest alone enclose most points; only the others need all neighbours that can touch the disc.
   std::vector<Touch> touches_of(std::size_t i) {
     take_nearest(i);
-    if (finder_.touches_of(i, near_).empty() && near_.size() > 1) return {};
+    if (finder_.is_enclosed(i, near_)) return {};
     tree_.within(points_mm_[i], 2.0 * disc_mm_, found_);
     near_.clear();
     for (const Neighbour& n : found_)
