@@ -138,6 +138,8 @@ ToolPath read_path(const Recipe& recipe, const std::vector<Contour>& accepted, s
                                  .next = "to judge the shape alone: arris inspect"});
   PathCsv read = read_path_csv(read_text_file(recipe.toolpath.file, "tool path"), recipe.toolpath.file.string());
   notes.insert(notes.end(), read.notes.begin(), read.notes.end());
+  for (PathPoint& point : read.path.points)
+    if (point.feed_mm_s == 0.0) point.feed_mm_s = recipe.toolpath.feed_mm_s;
   return std::move(read.path);
 }
 

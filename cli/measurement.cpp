@@ -10,16 +10,16 @@
 namespace arris {
 namespace {
 
+constexpr double kSamePointMm = 1e-3;  // a choice holds the scan's own points, rounded
+
+/// Marks the loops that the operator did not accept; the pose is still searched with all of them.
 void use_choice(const ContourChoice& choice, const Eigen::Vector3d& offset_mm, ScanModel& model) {
-  model.loops.clear();
-  model.edge_mm.clear();
-  model.edge_normals.clear();
-  for (Contour loop : choice.accepted()) {
-    for (Eigen::Vector3d& p : loop.points_mm) p -= offset_mm;
-    model.edge_mm.insert(model.edge_mm.end(), loop.points_mm.begin(), loop.points_mm.end());
-    model.edge_normals.insert(model.edge_normals.end(), loop.normals.begin(), loop.normals.end());
-    model.loops.push_back(std::move(loop));
-  }
+  const std::vector<Contour> accepted = choice.accepted();
+  model.loop_rejected.assign(model.loops.size(), 1);
+  for (std::size_t l = 0; l < model.loops.size(); ++l)
+    for (const Contour& contour : accepted)
+      for (const Eigen::Vector3d& p : contour.points_mm)
+        if ((p - offset_mm - model.loops[l].points_mm.front()).norm() < kSamePointMm) model.loop_rejected[l] = 0;
 }
 
 void note_loops(const PreparedScan& prepared, std::vector<std::string>& notes) {

@@ -38,7 +38,7 @@ void refuse_wrong_input(const CoarseAlignment& coarse, const Recipe& recipe) {
   std::snprintf(ratio, sizeof ratio, "%g", coarse.unit_ratio);
   throw Error(Fault::kInput, {.what = "the scan is in another unit than the recipe says",
                               .found = std::string("contours that fit the CAD when scaled by ") + ratio,
-                              .needed = "points in " + recipe.scan.units + " (scan.units)",
+                              .needed = "the file's unit in scan.units (it says " + recipe.scan.units + ")",
                               .next = "set scan.units in the recipe, or export the scan again"});
 }
 

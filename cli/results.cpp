@@ -12,7 +12,6 @@ namespace arris {
 namespace {
 
 constexpr double kSampleMm = 2.0;
-constexpr double kEdgeLimitLengthMm = 50.0;   // a shift over this length is what a scan can show of an edge
 constexpr double kSurfaceLimitRadiusMm = 10.0;
 constexpr double kExpanded = 2.0;             // k
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
@@ -39,18 +38,11 @@ ContourError error_along(const CadModel& cad, std::size_t c, const Registration&
 double worst_edge_sd_mm(const Registration& found) {
   double worst = 0.0;
   for (const ContourResult& contour : found.contours) {
-    const double length_mm = contour.motion.nominal().length_mm();
-    for (double s_mm = 0.0; s_mm < length_mm; s_mm += kSampleMm) {
-      if (!contour.edge.seen_at(s_mm)) continue;
-      const SplineRow row = contour.edge.spline.at(s_mm);
-      double variance = 0.0;
-      for (std::size_t a = 0; a < 4; ++a)
-        for (std::size_t b = 0; b < 4; ++b)
-          variance += row.value[a] * row.value[b] * contour.edge.across_covariance(row.index[a], row.index[b]);
-      worst = std::max(worst, variance);
-    }
+    const Curve& curve = contour.motion.nominal();
+    for (double s_mm = 0.0; s_mm < curve.length_mm(); s_mm += kSampleMm)
+      if (contour.edge.seen_at(s_mm)) worst = std::max(worst, contour.edge.sd_across_mm(s_mm, curve.closed()));
   }
-  return std::sqrt(worst);
+  return worst;
 }
 
 void judge_shape(RunRecord& record) {
@@ -85,8 +77,9 @@ void judge_edge(const Registration& found, RunRecord& record) {
 
 void judge_results(const CadModel& cad, const Registration& found, RunRecord& record) {
   for (std::size_t c = 0; c < cad.contours.size(); ++c) record.contour_errors.push_back(error_along(cad, c, found));
+  for (const ContourResult& contour : found.contours)
+    record.edge_limit_mm = std::max(record.edge_limit_mm, contour.edge.edge_limit_mm());
   const double density = std::max(found.density_per_mm2, 1e-12);
-  record.edge_limit_mm = 1.0 / (density * kEdgeLimitLengthMm);
   const double near_points =
       std::max(1.0, density * 0.5 * std::numbers::pi * kSurfaceLimitRadiusMm * kSurfaceLimitRadiusMm);
   record.surface_limit_mm = record.noise_sigma_mm / std::sqrt(near_points);

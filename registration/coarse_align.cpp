@@ -16,12 +16,14 @@ namespace {
 
 constexpr std::size_t kSurfaceSample = 160;
 constexpr std::size_t kEdgeSample = 120;
+constexpr std::size_t kEdgeScored = 2000;      // a thinned edge would score its own gaps, some 5 mm
 constexpr std::size_t kRefined = 4;            // candidates a hypothesis that are refined
 constexpr double kFreeEigenvalueRatio = 1e-4;  // methods: slippage, Gelfand and Guibas 2003
 constexpr double kEdgeKept = 0.75, kSurfaceKept = 0.9;
 constexpr std::size_t kLoopSample = 12;
-constexpr double kMirrorBetterRatio = 0.5;
-constexpr double kExtentsAgree[] = {0.4, 15.0};  // of scan and contour: no wrong unit is needed to explain them
+constexpr double kMirrorBetterRatio = 0.6;      // of the scores beyond what the point spacing alone leaves
+constexpr double kMirrorOfAmbiguousRatio = 0.8;  // of the scores, when two poses fit alike
+constexpr double kExtentsAgree[] = {0.8, 15.0};  // of scan and contour: no wrong unit is needed to explain them
 constexpr double kScaledExtentMost = 6.0;         // and in another unit only this far from the contour's
 constexpr std::size_t kLongestLoops = 3;
 constexpr double kInitialFitsRatio = 0.08;  // of the contour's size: a long side on a short one leaves more
@@ -38,8 +40,8 @@ std::vector<T> every(const std::vector<T>& values, std::size_t count) {
 /// A small copy of the scan for scoring: as it is, with the other side up, or mirrored in x.
 ScanModel hypothesis(const ScanModel& scan, bool flip, bool mirror) {
   ScanModel light{every(scan.points_mm, 8 * kSurfaceSample), every(scan.normals, 8 * kSurfaceSample),
-                  NearestPoints({}), scan.loops, every(scan.edge_mm, kEdgeSample),
-                  every(scan.edge_normals, kEdgeSample), scan.spacing_mm, scan.noise_sigma_mm, SideKnown::kYes};
+                  NearestPoints({}), scan.loops, every(scan.edge_mm, kEdgeScored),
+                  every(scan.edge_normals, kEdgeScored), scan.spacing_mm, scan.noise_sigma_mm, SideKnown::kYes};
   const auto reflect = [](Eigen::Vector3d& p) { p.x() = -p.x(); };
   const auto negate = [](Eigen::Vector3d& n) { n = -n; };
   if (mirror) {
@@ -222,10 +224,9 @@ double extent_mm(const std::vector<Eigen::Vector3d>& points_mm) {
 /// either: a scan of many small loops has one of any length.
 double unit_that_fits(const CadModel& cad, const ScanModel& scan) {
   const double scan_mm = extent_mm(scan.points_mm);
-  for (const Curve& curve : cad.contours) {
-    const double part_mm = extent_mm(curve.contour().points_mm);
-    if (scan_mm > kExtentsAgree[0] * part_mm && scan_mm < kExtentsAgree[1] * part_mm) return 1.0;
-  }
+  double part_mm = 0.0;  // of the largest: a whole plate in inches is as large as a small hole in millimetres
+  for (const Curve& curve : cad.contours) part_mm = std::max(part_mm, extent_mm(curve.contour().points_mm));
+  if (scan_mm > kExtentsAgree[0] * part_mm && scan_mm < kExtentsAgree[1] * part_mm) return 1.0;
   for (const double ratio : kUnitRatios)
     for (const Curve& curve : cad.contours) {
       const double scaled_extent = scan_mm * ratio / extent_mm(curve.contour().points_mm);
@@ -276,6 +277,11 @@ CoarseAlignment from_initial(const ScanModel& scan, const CoarseAlignOptions& op
     result.reason = "the initial pose does not fit: the scan's edge stays " + millimetres(best.score_mm) +
                     " mm from the contours";
   return result;
+}
+
+/// What a score holds beyond the offset of angle-gap edge points, about a spacing.
+double beyond_spacing(double score_mm, const ScanModel& scan) {
+  return std::sqrt(std::max(0.0, score_mm * score_mm - scan.spacing_mm * scan.spacing_mm));
 }
 
 std::string ambiguity(const Candidate& best, const Candidate& other, double ratio) {
@@ -337,12 +343,15 @@ CoarseAlignment coarse_align(const CadModel& cad, const ScanModel& scan, const C
   result.flipped_normals = best.flip;
   const std::vector<Candidate> mirrored = search.candidates(scan, false, true, 2);
   if (!mirrored.empty()) result.mirror_ratio = mirrored.front().score_mm / best.score_mm;
-  if (!side_open && !mirrored.empty() && mirrored.front().score_mm < kMirrorBetterRatio * best.score_mm &&
-      best.score_mm > 2.0 * scan.spacing_mm) {
+  const auto call_mirrored = [&] {
     result.mirrored = true;
     result.reason = "the mirror image of the scan fits the part and the scan itself does not";
     return result;
-  }
+  };
+  const double mirror_excess_mm = mirrored.empty() ? 1e300 : beyond_spacing(mirrored.front().score_mm, scan);
+  if (!side_open && best.score_mm > 2.0 * scan.spacing_mm &&
+      mirror_excess_mm < kMirrorBetterRatio * beyond_spacing(best.score_mm, scan))
+    return call_mirrored();
   for (const Candidate& other : proper) {
     if (&other == &best || other.score_mm > 1e299) continue;
     if (other.flip == best.flip && search.same_place(best, other)) continue;
@@ -350,8 +359,11 @@ CoarseAlignment coarse_align(const CadModel& cad, const ScanModel& scan, const C
     if (result.runner_up_ratio < options.ambiguity_ratio) result.reason = ambiguity(best, other, result.runner_up_ratio);
     break;
   }
+  if (!result.usable() && !side_open && result.mirror_ratio > 0.0 && result.mirror_ratio < kMirrorOfAmbiguousRatio)
+    return call_mirrored();
   if (result.usable() && best.score_mm > 0.8 * search.cap_mm())
     result.reason = "no pose fits: the best start leaves " + millimetres(best.score_mm) + " mm";
+  if (!result.usable()) result.unit_ratio = unit_that_fits(cad, scan);
   return result;
 }
 

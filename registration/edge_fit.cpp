@@ -17,6 +17,8 @@ constexpr double kStrayShare = 0.02;    // of the density: points beyond the edg
 constexpr double kGateSigmas = 4.0;     // height residual of a point that takes part in the edge
 constexpr double kPointsPerBin = 8.0;
 constexpr int kRounds = 30;
+constexpr double kEdgeLimitLengthMm = 50.0;  // an edge is known up to a smooth shift over about this length
+constexpr double kGapBendPerMm = 5e-4;       // how much a part may bend between the two sides of a gap
 constexpr std::size_t kChunk = 512;
 
 /// A scan point in the contour's own coordinates, CAD frame.
@@ -35,6 +37,16 @@ double median_of(std::vector<double> values) {
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
+
+double variance_at(const SplineRow& row, const Eigen::MatrixXd& covariance) {
+  double variance = 0.0;
+  for (std::size_t a = 0; a < 4; ++a)
+    for (std::size_t b = 0; b < 4; ++b)
+      variance += row.value[a] * row.value[b] * covariance(row.index[a], row.index[b]);
+  return std::max(0.0, variance);
+}
+
+double unseen_bend_mm(double to_seen_mm) { return 0.5 * kGapBendPerMm * to_seen_mm * to_seen_mm; }
 
 double sigmoid(double x) { return x >= 0.0 ? 1.0 / (1.0 + std::exp(-x)) : std::exp(x) / (1.0 + std::exp(x)); }
 
@@ -301,6 +313,23 @@ double EdgeFit::to_seen_mm(double arc_mm, bool closed) const {
     }
   }
   return std::max(0.0, nearest_mm);
+}
+
+double EdgeFit::edge_limit_mm() const { return 1.0 / (kEdgeLimitLengthMm * std::max(density_per_mm2, 1e-9)); }
+
+double EdgeFit::sd_across_mm(double arc_mm, bool closed) const {
+  const double gap_mm = unseen_bend_mm(to_seen_mm(arc_mm, closed));
+  const double limit_mm = edge_limit_mm();
+  return std::sqrt(variance_at(spline.at(arc_mm), across_covariance) + limit_mm * limit_mm + gap_mm * gap_mm);
+}
+
+double EdgeFit::sd_height_mm(double arc_mm, bool closed) const {
+  const double gap_mm = unseen_bend_mm(to_seen_mm(arc_mm, closed));
+  return std::sqrt(variance_at(spline.at(arc_mm), height_covariance) + gap_mm * gap_mm);
+}
+
+double EdgeFit::sd_tilt_rad(double arc_mm) const {
+  return std::sqrt(variance_at(spline.at(arc_mm), tilt_covariance));
 }
 
 double EdgeFit::seen_ratio() const {

@@ -38,6 +38,13 @@ struct EdgeFit {
   [[nodiscard]] bool seen_at(double arc_mm) const;
   /// Arc length to the nearest place where the edge was seen; 0 where it was.
   [[nodiscard]] double to_seen_mm(double arc_mm, bool closed) const;
+  /// Standard deviations at s: of the fit, the edge limit 1 / (density * 50 mm) that no scan of this density goes below
+  /// across the contour, and what a part may bend unseen inside a gap.
+  [[nodiscard]] double sd_across_mm(double arc_mm, bool closed) const;
+  [[nodiscard]] double sd_height_mm(double arc_mm, bool closed) const;
+  [[nodiscard]] double sd_tilt_rad(double arc_mm) const;
+  /// 1 / (density * 50 mm).
+  [[nodiscard]] double edge_limit_mm() const;
   /// Share of the contour's length on which the edge was seen.
   [[nodiscard]] double seen_ratio() const;
 };

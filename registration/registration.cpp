@@ -34,6 +34,7 @@ void drop_other_loops(const CadModel& cad, ScanModel& scan, const RigidMotion& s
   scan.edge_mm.clear();
   scan.edge_normals.clear();
   for (std::size_t l = 0; l < scan.loops.size(); ++l) {
+    if (l < scan.loop_rejected.size() && scan.loop_rejected[l]) assigned[l].contour = -1;
     if (assigned[l].contour < 0) continue;
     scan.edge_mm.insert(scan.edge_mm.end(), scan.loops[l].points_mm.begin(), scan.loops[l].points_mm.end());
     scan.edge_normals.insert(scan.edge_normals.end(), scan.loops[l].normals.begin(), scan.loops[l].normals.end());

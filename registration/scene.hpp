@@ -36,6 +36,7 @@ struct ScanModel {
   double spacing_mm = 0.0;                 ///< median point spacing
   double noise_sigma_mm = 0.0;
   SideKnown side = SideKnown::kNo;
+  std::vector<char> loop_rejected = {};    ///< an operator's choice, one a loop: the pose may use it, the fit may not
 };
 
 }  // namespace arris

@@ -6,17 +6,6 @@
 namespace arris {
 namespace {
 
-/// How much a part may bend between the two sides of a gap, beyond what its segments say; 1/mm.
-constexpr double kGapBendPerMm = 5e-4;
-
-double variance_at(const SplineRow& row, const Eigen::MatrixXd& covariance) {
-  double variance = 0.0;
-  for (std::size_t a = 0; a < 4; ++a)
-    for (std::size_t b = 0; b < 4; ++b)
-      variance += row.value[a] * row.value[b] * covariance(row.index[a], row.index[b]);
-  return std::max(0.0, variance);
-}
-
 /// Slope of the height along the contour, by a central difference of a quarter knot.
 double height_slope(const EdgeFit& edge, const Curve& curve, double arc_mm) {
   const double step_mm = 0.25 * edge.spline.knot_mm();
@@ -60,11 +49,8 @@ MappedPoint SubdivisionField::map(const Eigen::Vector3d& p_cad_mm) const {
   if (follow_edge_) shift += row.dot(edge.across) * inward;
   mapped.p_scan_mm = motion * (foot.foot_mm + shift + turn * (p_cad_mm - foot.foot_mm));
   mapped.rotation_scan_from_cad = motion.linear() * turn;
-  const double unseen_mm = edge.to_seen_mm(foot.arc_mm, curve.closed());
-  const double gap_mm = 0.5 * kGapBendPerMm * unseen_mm * unseen_mm;
-  mapped.sd_mm = {std::sqrt(variance_at(row, edge.height_covariance) + gap_mm * gap_mm),
-                  std::sqrt(variance_at(row, edge.across_covariance) + gap_mm * gap_mm), 0.0};
-  mapped.sd_axis_rad = std::sqrt(variance_at(row, edge.tilt_covariance));
+  mapped.sd_mm = {edge.sd_height_mm(foot.arc_mm, curve.closed()), edge.sd_across_mm(foot.arc_mm, curve.closed()), 0.0};
+  mapped.sd_axis_rad = edge.sd_tilt_rad(foot.arc_mm);
   mapped.from_data = edge.seen_at(foot.arc_mm);
   mapped.in_domain = foot.distance_mm <= band_mm_;
   return mapped;

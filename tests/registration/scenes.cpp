@@ -9,8 +9,12 @@ namespace arris::scenes {
 
 CadModel cad_of(const synthetic::Part& part, const std::vector<int>& contours, double edge_mm) {
   std::vector<Contour> accepted;
-  for (const int c : contours) accepted.push_back(part.nominal_contour(c, 1.0));
-  return prepare_cad(part.cad_mesh(edge_mm), accepted);
+  std::vector<Contour> others;
+  for (int c = 0; c < part.contour_count(); ++c) {
+    const bool follow = std::find(contours.begin(), contours.end(), c) != contours.end();
+    (follow ? accepted : others).push_back(part.nominal_contour(c, 1.0));
+  }
+  return prepare_cad(part.cad_mesh(edge_mm), accepted, others);
 }
 
 synthetic::FePart fe(const std::string& name) {

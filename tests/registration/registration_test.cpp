@@ -1,0 +1,170 @@
+#include "registration/registration.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/registration/scenes.hpp"
+
+namespace arris {
+namespace {
+
+using scenes::Trial;
+
+synthetic::ScanOptions hard() {
+  synthetic::ScanOptions out;
+  out.missing_ratio = 0.15;
+  out.stray_ratio = 0.05;
+  out.wall_ratio = 0.03;
+  out.density_variation_ratio = 2.0;
+  return out;
+}
+
+RegistrationOptions on_threads(int threads) {
+  RegistrationOptions options;
+  options.threads = options.coarse.threads = options.rigid.threads = threads;
+  options.subdivision.threads = options.edge.threads = threads;
+  return options;
+}
+
+ScanModel copy_of(const ScanModel& scan) { return scenes::moved(scan, RigidMotion::Identity()); }
+
+scenes::Distance field_error(const CadModel& cad, const Trial& trial, const Registration& found) {
+  return scenes::distance_between(
+      scenes::carried(cad.contours[0], 2.0,
+                      [&](double, const Eigen::Vector3d& p) { return found.field->map(p).p_scan_mm; }),
+      trial.true_curve_mm);
+}
+
+scenes::Distance rigid_error(const CadModel& cad, const Trial& trial, const Registration& found) {
+  return scenes::distance_between(
+      scenes::carried(cad.contours[0], 2.0,
+                      [&](double, const Eigen::Vector3d& p) {
+                        return Eigen::Vector3d(found.rigid.scan_from_cad * p);
+                      }),
+      trial.true_curve_mm);
+}
+
+TEST(RegisterPart, SameBytesForAnyThreadCount) {
+  const synthetic::FePart part = scenes::fe("sheet");
+  const CadModel cad = scenes::cad_of(part);
+  Trial trial = scenes::trial_of(part, hard(), 2);
+  ScanModel first = copy_of(trial.scan);
+  const Registration one = register_part(cad, first, on_threads(1));
+  ASSERT_TRUE(one.usable()) << one.refusals.front();
+  for (const int threads : {2, 8}) {
+    ScanModel again = copy_of(trial.scan);
+    const Registration many = register_part(cad, again, on_threads(threads));
+    ASSERT_TRUE(many.usable());
+    EXPECT_EQ(one.field->parameters(), many.field->parameters()) << threads;
+    EXPECT_EQ(one.rigid.scan_from_cad.matrix(), many.rigid.scan_from_cad.matrix());
+    EXPECT_EQ(one.stage_residual_mm, many.stage_residual_mm);
+  }
+}
+
+TEST(RegisterPart, MovingTheScanMovesTheAnswerAndNothingElse) {
+  // Not the sheet: its circle leaves the turn about its axis free, and rounding chooses among equal starts.
+  const synthetic::FePart part = scenes::fe("porthole");
+  const CadModel cad = scenes::cad_of(part);
+  Trial trial = scenes::trial_of(part, {}, 3);
+  ScanModel first = copy_of(trial.scan);
+  const Registration plain = register_part(cad, first, {});
+  ASSERT_TRUE(plain.usable());
+  synthetic::Random random(2);
+  for (const double far_mm : {100.0, 10000.0}) {
+    const RigidMotion motion = scenes::disturbance(random, {0, 0, 0}, random.uniform(0.5, 3.0), far_mm);
+    ScanModel scan = scenes::moved(trial.scan, motion);
+    const Registration found = register_part(cad, scan, {});
+    ASSERT_TRUE(found.usable());
+    const RigidMotion back = motion.inverse();
+    double most_mm = 0.0;
+    for (double s = 0.0; s < cad.contours[0].length_mm(); s += 10.0) {
+      const Eigen::Vector3d p = cad.contours[0].point_mm(s);
+      most_mm = std::max(most_mm, (back * found.field->map(p).p_scan_mm - plain.field->map(p).p_scan_mm).norm());
+    }
+    EXPECT_LT(most_mm, 1e-6) << far_mm;
+  }
+}
+
+TEST(RegisterPart, RigidMethodGivesARigidFieldAndTheFoundEdgeAllTheSame) {
+  const synthetic::FePart part = scenes::fe("sheet");
+  const CadModel cad = scenes::cad_of(part);
+  Trial trial = scenes::trial_of(part, {}, 3);
+  RegistrationOptions options;
+  options.method = RegistrationMethod::kRigid;
+  const Registration found = register_part(cad, trial.scan, options);
+  ASSERT_TRUE(found.usable());
+  EXPECT_EQ(found.field->method(), "rigid");
+  ASSERT_EQ(found.contours.size(), 1u);
+  // The gap between found edge and rigidly carried nominal is the deformation that the truth shows.
+  double gap_mm = 0.0;
+  for (int i = 0; i < 100; ++i)
+    gap_mm += rigid_gap_mm(cad, 0, found, cad.contours[0].length_mm() * i / 100.0) / 100.0;
+  EXPECT_NEAR(gap_mm, rigid_error(cad, trial, found).mean_mm, 0.35);
+}
+
+TEST(RegisterPart, SaysWhereTheEdgeWasNotSeen) {
+  const synthetic::FePart part = scenes::fe("sheet");
+  const CadModel cad = scenes::cad_of(part);
+  Trial trial = scenes::trial_of(part, {}, 5);
+  RegistrationOptions options;
+  options.max_unseen_mm = 0.0;
+  options.min_seen_ratio = 1.0;
+  Trial gappy = scenes::trial_of(part, hard(), 5);
+  const Registration found = register_part(cad, gappy.scan, options);
+  ASSERT_TRUE(found.usable());
+  ASSERT_EQ(found.refusals.size(), 2u);
+  EXPECT_NE(found.refusals[0].find("100 % needed"), std::string::npos) << found.refusals[0];
+  EXPECT_NE(found.refusals[1].find("not seen from"), std::string::npos) << found.refusals[1];
+}
+
+/// What a part must reach, against the truth; ratios are of rigid ICP's error on the same scan.
+struct Bounds {
+  const char* part;
+  double clean_mean_limits, clean_mean_mm, clean_mean_ratio, clean_max_ratio;  ///< limits: in units of E
+  double hard_mean_limits, hard_mean_mm;
+};
+
+class SlowFePart : public testing::TestWithParam<Bounds> {
+ protected:
+  const Bounds& bounds_ = GetParam();
+  synthetic::FePart part_ = scenes::fe(bounds_.part);
+  CadModel cad_ = scenes::cad_of(part_);
+};
+
+TEST_P(SlowFePart, CleanScanIsCorrectedToTheLimitOfWhatItShows) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Trial trial = scenes::trial_of(part_, {}, seed);
+    const Registration found = register_part(cad_, trial.scan, {});
+    ASSERT_TRUE(found.usable()) << found.refusals.front();
+    EXPECT_TRUE(found.refusals.empty()) << found.refusals.front();
+    const scenes::Distance field = field_error(cad_, trial, found), rigid = rigid_error(cad_, trial, found);
+    EXPECT_LT(field.mean_mm, bounds_.clean_mean_limits * trial.edge_limit_mm) << seed;
+    EXPECT_LT(field.mean_mm, bounds_.clean_mean_mm) << seed;
+    EXPECT_LT(field.mean_mm, bounds_.clean_mean_ratio * rigid.mean_mm) << seed;
+    EXPECT_LT(field.max_mm, bounds_.clean_max_ratio * rigid.max_mm) << seed;
+    EXPECT_LT(found.stage_residual_mm.back().second, found.stage_residual_mm.front().second);
+    EXPECT_LT(std::abs(found.mean_strain_ratio), 0.003);  // the parts bend, they hardly stretch
+  }
+}
+
+TEST_P(SlowFePart, HardScanIsCorrectedOrRefused) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Trial trial = scenes::trial_of(part_, hard(), seed);
+    const Registration found = register_part(cad_, trial.scan, {});
+    if (!found.usable() || !found.refusals.empty()) continue;
+    const double mean_mm = field_error(cad_, trial, found).mean_mm;
+    EXPECT_LT(mean_mm, bounds_.hard_mean_limits * trial.edge_limit_mm) << seed;
+    EXPECT_LT(mean_mm, bounds_.hard_mean_mm) << seed;
+  }
+}
+
+// Nose cone: the job's own figures (75 % less than rigid ICP in the mean, 65 % in the peak). Sheet: at most 0.4 mm.
+// Porthole: 1,500 points over 70 mm, E = 0.6 mm, and one of three scans has a thin stretch: E and a quarter.
+// Hard scans lose 15 % of the contour, where only the splines' stiffness decides.
+INSTANTIATE_TEST_SUITE_P(All, SlowFePart,
+                         testing::Values(Bounds{"nosecone", 1.0, 0.4, 0.25, 0.35, 2.5, 0.9},
+                                         Bounds{"sheet", 1.0, 0.4, 0.25, 0.35, 2.0, 0.4},
+                                         Bounds{"porthole", 1.25, 0.8, 0.25, 0.35, 2.5, 1.5}),
+                         [](const auto& at) { return std::string(at.param.part); });
+
+}  // namespace
+}  // namespace arris
