@@ -35,7 +35,7 @@ Points surface_points(const synthetic::Part& part, const Truth& truth) {
       std::sqrt(part.band_area_mm2(0, part.band_mm()) / static_cast<double>(part.scan_points()));
   Points points;
   for (const synthetic::AreaSample& sample : part.area_samples(spacing_mm))
-    if (truth.nominal_distance_mm(sample.nominal_mm) < part.band_mm()) points.push_back(sample.nominal_mm);
+    if (truth.near_nominal(sample.nominal_mm, part.band_mm())) points.push_back(sample.nominal_mm);
   const std::size_t wanted =
       std::min(points.size(), part.scan_points());  // cells are smaller where the mesh is
   for (std::size_t i = 0; i < wanted; ++i) points[i] = points[i * points.size() / wanted];
@@ -123,7 +123,9 @@ class Comparison {
 
   void subdivisions() {
     const ScanModel& model = scan_->model;
-    const EdgeData raw{model.edge_mm, std::max(0.05, kRawEdgeSpacings * model.spacing_mm)};
+    EdgeData raw;
+    raw.points_mm = model.edge_mm;
+    raw.sigma_across_mm = std::max(0.05, kRawEdgeSpacings * model.spacing_mm);
     const SubdivisionIcpOptions ours = registration_options(part_.recipe, part_.threads).subdivision;
     SubdivisionIcpOptions paper = ours;
     paper.match = SegmentMatch::kPaper;

@@ -65,10 +65,6 @@ double Truth::arc_mm(const Foot& foot) const {
   return begin + foot.ratio * (end - begin);
 }
 
-double Truth::nominal_distance_mm(const Eigen::Vector3d& p_cad_mm) const {
-  return nearest(nominal_, false, p_cad_mm).offset_mm.norm();
-}
-
 PathError Truth::error(std::span<const Eigen::Vector3d> nominal_mm,
                        std::span<const Eigen::Vector3d> carried_mm) const {
   PathError error;

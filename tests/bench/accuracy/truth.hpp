@@ -25,7 +25,10 @@ class Truth {
   /// Row i of the nominal path and where it was carried, both in the CAD frame (the scan's true pose undone).
   [[nodiscard]] PathError error(std::span<const Eigen::Vector3d> nominal_mm,
                                 std::span<const Eigen::Vector3d> carried_mm) const;
-  [[nodiscard]] double nominal_distance_mm(const Eigen::Vector3d& p_cad_mm) const;
+  /// Whether a point of the drawing lies within reach_mm of the nominal edge.
+  [[nodiscard]] bool near_nominal(const Eigen::Vector3d& p_cad_mm, double reach_mm) const {
+    return nominal_.nearest(p_cad_mm, reach_mm).has_value();
+  }
   [[nodiscard]] const std::vector<synthetic::EdgePoint>& edge() const { return edge_; }
   /// A circle may turn about its axis unseen: there "along" says nothing.
   [[nodiscard]] bool is_circle() const { return is_circle_; }
