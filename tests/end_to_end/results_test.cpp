@@ -172,7 +172,7 @@ TEST(Refused, MostOfTheContourUnseen) {
 
 /// More missing is no better: the borders of the gaps are not taken for the edge.
 TEST(Refused, EvenMoreOfTheContourUnseen) {
-  expect_refused_for_gaps(0.7, 1);
+  expect_refused_for_gaps(0.7, 1, "60 % needed");
 }
 
 TEST(Refused, ScanOfAnotherPart) {
