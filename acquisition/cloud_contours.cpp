@@ -16,12 +16,15 @@ constexpr double kBesideCos = 0.7;     // normals of points of one smooth face, 
 constexpr double kJoinSpacings = 4.0;  // ends of broken chains no farther apart than this belong together,
 constexpr double kFarJoinSpacings = 12.0;  // or than this if both chains are long beside the gap
 constexpr double kFarJoinRatio = 0.1;
-constexpr double kBendChords = 8.0;         // the edge of a cloud is ragged by a third of a spacing and more
+// The edge of a cloud is ragged by a third of a spacing and more.
+constexpr BendWindow kRaggedBend{.chords = 8.0, .exact_corners = false};
 constexpr std::size_t kFewestClosed = 8;    // a chain of fewer points is not closed
 constexpr double kShortestSpacings = 20.0;  // shorter loops are voids of the sampling
 constexpr std::size_t kChunk = 256;
 constexpr double kLargestMismatch_rad = 0.5 * std::numbers::pi;  // between the disc's places at two points
-constexpr double kSureOverlap = 1e-9;                            // of arcs, against rounding
+constexpr double kAcrossRatio = 0.12;  // mean squared sine of a row's neighbours; half in an even cloud
+constexpr double kRowsRatio = 0.5;     // of the points
+constexpr double kSureOverlap = 1e-9;  // of arcs, against rounding
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 /// Largest angle between neighbours, seen in the tangent plane.
@@ -38,6 +41,28 @@ double largest_gap_rad(const Eigen::Vector3d& p, const Eigen::Matrix3d& frame,
   double gap = angles.front() + kTwoPi - angles.back();
   for (std::size_t k = 1; k < angles.size(); ++k) gap = std::max(gap, angles[k] - angles[k - 1]);
   return gap;
+}
+
+/// Share of points (a sample of some thousand) whose nearest all lie along the line to the very nearest: they
+/// show a row, no surface.
+double row_ratio(std::span<const Eigen::Vector3d> points_mm, const NeighbourTable& table) {
+  const std::size_t step = 1 + points_mm.size() / 2000;
+  std::size_t rows = 0, looked_at = 0;
+  for (std::size_t i = 0; i < points_mm.size(); i += step, ++looked_at) {
+    Eigen::Vector3d line = Eigen::Vector3d::Zero();
+    double across = 0.0, along = 0.0;
+    for (const std::int32_t j : table.of(i)) {
+      if (j < 0) continue;
+      const Eigen::Vector3d d = points_mm[static_cast<std::size_t>(j)] - points_mm[i];
+      if (line.isZero()) line = d;
+      const double share = d.dot(line) * d.dot(line) / (d.squaredNorm() * line.squaredNorm());
+      if (!std::isfinite(share)) continue;  // points in one place
+      along += share;
+      across += 1.0 - share;
+    }
+    if (across < kAcrossRatio * (across + along)) ++rows;
+  }
+  return looked_at == 0 ? 0.0 : static_cast<double>(rows) / static_cast<double>(looked_at);
 }
 
 /// A direction in which the empty disc can touch a point, between two neighbours that stop it. With the
@@ -382,7 +407,13 @@ ContourSet cloud_contours(std::span<const Eigen::Vector3d> points_mm, const Near
   std::vector<FoundContour> loops = Walk(points_mm, surface.normals, std::move(nodes)).loops();
   loops = joined(std::move(loops), planes.spacing_median_mm);
   std::erase_if(loops, [](const FoundContour& loop) { return loop.contour.points_mm.size() < 2; });
-  return measured(std::move(loops), shortest_mm, kBendChords);
+  ContourSet set = measured(std::move(loops), shortest_mm, kRaggedBend);
+  if (row_ratio(points_mm, table) > kRowsRatio)
+    set.notes.push_back(
+        "the points lie in rows, far denser along them than across: no surface is seen between rows; thin "
+        "the "
+        "scan to half the distance of its rows (voxel_mm)");
+  return set;
 }
 
 }  // namespace arris

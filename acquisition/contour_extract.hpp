@@ -30,25 +30,27 @@ struct ContourOptions {
 struct FoundContour {
   Contour contour;
   double length_mm = 0.0;
-  double min_bend_radius_mm = 0.0;
-  double closing_gap_mm = 0.0;  ///< distance between the ends of an open chain; 0 when closed
-  std::string note;             ///< "filled hole: 214 triangles without a scan point's density", "outer", ...
+  double min_bend_radius_mm = 0.0;  ///< 0: a sharp corner of a drawing; a scan's is that of its ragged points
+  double closing_gap_mm = 0.0;      ///< distance between the ends of an open chain; 0 when closed
+  std::string note;  ///< "filled hole: 214 triangles without a scan point's density", "outer", ...
 };
 
 /// Loops found, longest first, ids from 1; dropped ones apart, with the reason in `note`.
 struct ContourSet {
   std::vector<FoundContour> found;
   std::vector<FoundContour> dropped;
-  std::vector<std::string> notes;  ///< oddities of the mesh, filled holes
+  std::vector<std::string>
+      notes;  ///< oddities of the mesh, filled holes; a cloud that shows rows and no surface
 };
 
 /// Contours of a mesh. An open mesh: its one-face edges, chained to loops around the faces' fans, so that
 /// loops which touch at a vertex stay apart. A closed mesh: smooth regions are flooded up to the edges
 /// sharper than sharp_edge_rad, and each region's border is chained the same way; of two regions that share a
-/// whole loop the larger keeps it (a hole's rim belongs to the face, not to its wall). Vertices must be
-/// welded (read_mesh does). Normals: the faces of the region beside the edge. Orientation: material on the
-/// left, seen from the air side. No contours, but named in `notes`: edges of more than two faces, and cracks
-/// without width between faces that do not share their corners; neither makes a closed mesh an open one.
+/// whole loop the one that faces the loop's plane keeps it (a rim belongs to the face, not to the wall of the
+/// hole), of like ones the larger. Vertices must be welded (read_mesh does). Normals: the faces of the region
+/// beside the edge. Orientation: material on the left, seen from the air side. No contours, but named in
+/// `notes`: edges of more than two faces, and cracks without width between faces that do not share their
+/// corners; neither makes a closed mesh an open one.
 [[nodiscard]] ContourSet mesh_contours(const TriangleMesh& mesh, const ContourOptions& options);
 
 /// Contours of a scan that is a mesh: as an open mesh, after the triangles that a scanner's software
@@ -65,9 +67,11 @@ struct ContourSet {
 /// tangent planes and touches each loop's points in order (the border of a local alpha shape: Edelsbrunner et
 /// al., IEEE Trans. Inf. Theory 29(4), 1983). A loop without an angle gap (boundary_points) is none. Points
 /// that stand off their neighbours' plane (strays, the wall of a cut) are left out. Chains that break are
-/// joined where their ends are near. Loops shorter than min_length_mm are voids of the sampling and dropped.
-/// `planes.normals` must be oriented alike; out of the material for the material to lie on the left.
-/// Cost O(N log N); the loops do not depend on the order of the points beyond where they start.
+/// joined where their ends are near. The disc is one for the whole cloud: densities up to 4 : 1, and rows up
+/// to five times finer along than across, show their edges; denser rows are named in `notes`. Loops shorter
+/// than min_length_mm are voids of the sampling and dropped. `planes.normals` must be oriented alike; out of
+/// the material for the material to lie on the left. Cost O(N log N); the loops do not depend on the order of
+/// the points beyond where they start.
 [[nodiscard]] ContourSet cloud_contours(std::span<const Eigen::Vector3d> points_mm, const NearestPoints& tree,
                                         const LocalPlanes& planes, const ContourOptions& options);
 

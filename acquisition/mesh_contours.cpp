@@ -10,7 +10,8 @@
 namespace arris {
 namespace {
 
-constexpr double kBendChords = 3.0;
+constexpr BendWindow kDrawnBend{.chords = 3.0, .exact_corners = true};
+constexpr BendWindow kScannedBend{.chords = 3.0, .exact_corners = false};
 constexpr double kFlatTriangle = 1e-6;  // height over longest side, of a triangle without a normal of its own
 constexpr double kCrackWidth = 1e-4;    // mean width over length, of a loop that is a crack
 
@@ -152,6 +153,39 @@ Regions smooth_regions(const Borders& borders, double sharp_edge_rad) {
   return regions;
 }
 
+/// Mean cosine between the faces along a loop and the plane that it encloses: 1 beside a flat face whose rim
+/// it is, 0 beside the wall of a hole. Weighted by edge length.
+double facing_ratio(const Borders& borders, const std::vector<BorderEdge>& loop) {
+  const auto start_mm = [&](std::size_t i) -> const Eigen::Vector3d& {
+    return borders.mesh
+        .vertices_mm[static_cast<std::size_t>(start_vertex(borders.mesh, loop[i % loop.size()]))];
+  };
+  Eigen::Vector3d enclosed_mm2 = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < loop.size(); ++i)
+    enclosed_mm2 += (start_mm(i) - start_mm(0)).cross(start_mm(i + 1) - start_mm(0));
+  enclosed_mm2.normalize();
+  double sum_mm = 0.0, length_mm = 0.0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const double edge_mm = (start_mm(i + 1) - start_mm(i)).norm();
+    const Eigen::Vector3d& normal = borders.normals[static_cast<std::size_t>(loop[i].triangle)];
+    sum_mm += edge_mm * std::abs(normal.dot(enclosed_mm2));
+    length_mm += edge_mm;
+  }
+  return length_mm > 0.0 ? sum_mm / length_mm : 0.0;
+}
+
+/// Of two regions that share a whole loop: whether the first one keeps it, by facing_ratio(), then by area.
+struct LoopOfRegion {
+  double facing_ratio = -1.0, area_mm2 = 0.0;
+  std::vector<BorderEdge> loop;
+
+  [[nodiscard]] bool keeps_before(const LoopOfRegion& other) const {
+    constexpr double kAlike = 0.05;
+    if (std::abs(facing_ratio - other.facing_ratio) > kAlike) return facing_ratio > other.facing_ratio;
+    return area_mm2 > other.area_mm2;
+  }
+};
+
 std::vector<FoundContour> sharp_contours(const Borders& borders, double sharp_edge_rad) {
   const Regions regions = smooth_regions(borders, sharp_edge_rad);
   const auto region_of = [&](std::int32_t t) { return regions.of[static_cast<std::size_t>(t)]; };
@@ -159,20 +193,20 @@ std::vector<FoundContour> sharp_contours(const Borders& borders, double sharp_ed
     const std::int32_t other = borders.neighbours.at(t, k);
     return other < 0 || region_of(t) != region_of(other);
   };
-  // Two regions that share a whole loop: the larger one keeps it.
-  std::map<std::vector<std::int32_t>, std::pair<double, std::vector<BorderEdge>>> kept;
+  std::map<std::vector<std::int32_t>, LoopOfRegion> kept;
   for (auto& loop : border_loops(borders.mesh, borders.neighbours, is_border)) {
     if (is_crack(borders.mesh, loop)) continue;
     std::vector<std::int32_t> vertices;
     for (const BorderEdge& edge : loop) vertices.push_back(start_vertex(borders.mesh, edge));
     std::sort(vertices.begin(), vertices.end());
     const double area_mm2 = regions.area_mm2[static_cast<std::size_t>(region_of(loop.front().triangle))];
-    auto& entry = kept[std::move(vertices)];
-    if (area_mm2 > entry.first) entry = {area_mm2, std::move(loop)};
+    LoopOfRegion candidate{facing_ratio(borders, loop), area_mm2, std::move(loop)};
+    LoopOfRegion& entry = kept[std::move(vertices)];
+    if (candidate.keeps_before(entry)) entry = std::move(candidate);
   }
   std::vector<FoundContour> contours;
   for (const auto& [vertices, entry] : kept)
-    contours.push_back(contour_of(borders, entry.second, "sharp edge"));
+    contours.push_back(contour_of(borders, entry.loop, "sharp edge"));
   return contours;
 }
 
@@ -202,7 +236,7 @@ ContourSet mesh_contours(const TriangleMesh& mesh, const ContourOptions& options
   std::vector<FoundContour> contours;
   for (const auto& loop : open_loops(borders)) contours.push_back(contour_of(borders, loop, "boundary"));
   if (contours.empty()) contours = sharp_contours(borders, options.sharp_edge_rad);
-  ContourSet set = measured(std::move(contours), options.min_length_mm, kBendChords);
+  ContourSet set = measured(std::move(contours), options.min_length_mm, kDrawnBend);
   note_oddities(borders, set);
   return set;
 }
@@ -234,7 +268,7 @@ ContourSet scan_mesh_contours(const Scan& scan, const ContourOptions& options) {
       contours.back().note = "filled hole: the scanner's software stretched triangles over it";
   }
   const double shortest_mm = options.min_length_mm > 0.0 ? options.min_length_mm : 10.0 * median_mm;
-  ContourSet set = measured(std::move(contours), shortest_mm, kBendChords);
+  ContourSet set = measured(std::move(contours), shortest_mm, kScannedBend);
   if (outsized > 0)
     set.notes.push_back(std::to_string(outsized) +
                         " outsized triangles fill holes of the scan and are left out");

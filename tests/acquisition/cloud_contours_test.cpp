@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include "acquisition/clean.hpp"
 #include "tests/acquisition/plate_clouds.hpp"
 
 namespace arris {
@@ -277,6 +278,52 @@ TEST(CloudContours, SayWhatWasDropped) {
   ASSERT_EQ(set.found.size(), 1U);
   ASSERT_EQ(set.dropped.size(), 1U);
   EXPECT_NE(set.dropped[0].note.find("at least 300.0 mm needed"), std::string::npos) << set.dropped[0].note;
+}
+
+TEST(CloudContours, NameACloudOfRowsAndAreRightOnceItIsThinned) {
+  const Plate plate;
+  for (const Sampling sampling : kSamplings) EXPECT_TRUE(contours_of(sampled(plate, sampling)).notes.empty());
+  for (const double finer : {7.0, 10.0, 20.0}) {
+    SCOPED_TRACE(finer);
+    Random random(3);
+    const double pitch_mm = 2.0, along_mm = pitch_mm / finer;
+    PointCloud cloud;
+    for (double y = -59.0; y < 60.0; y += pitch_mm) {
+      const double shift_mm = random.uniform(0.0, along_mm);
+      for (double x = -60.0 + shift_mm; x < 60.0; x += along_mm)
+        if (plate.material_at({x, y, 0.0})) cloud.points_mm.emplace_back(x, y, 0.02 * random.normal());
+    }
+    const ContourSet rows = contours_of(local_points_mm(cloud));
+    ASSERT_EQ(rows.notes.size(), 1U);
+    EXPECT_NE(rows.notes[0].find("rows"), std::string::npos);
+    CleanOptions thin;
+    thin.voxel_mm = 0.5 * pitch_mm;
+    const ContourSet set = contours_of(local_points_mm(clean(cloud, thin).cloud));
+    EXPECT_TRUE(set.notes.empty());
+    ASSERT_EQ(set.found.size(), 2U);
+    const FoundContour* loop = loop_on(set, plate.holes[0], true);
+    ASSERT_NE(loop, nullptr);
+    EXPECT_TRUE(loop->contour.closed);
+    EXPECT_LT(error_of_loop(loop->contour, plate.holes[0], true).mean_mm, 0.5 * pitch_mm);
+  }
+}
+
+TEST(CloudContours, FindTheEdgesOfUnevenDensity) {
+  const Plate plate;
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    Random random(seed);
+    std::vector<Eigen::Vector3d> points_mm;
+    for (int i = 0; i < 28800; ++i) {
+      const Eigen::Vector3d p_mm =
+          Eigen::Vector3d(random.uniform(-60.0, 60.0), random.uniform(-60.0, 60.0), 0.0);
+      const double kept_ratio = std::pow(4.0, -(p_mm.x() + 60.0) / 120.0);  // 4 : 1 from left to right
+      if (random.uniform(0.0, 1.0) < kept_ratio && plate.material_at(p_mm)) points_mm.push_back(p_mm);
+    }
+    const ContourSet set = contours_of(points_mm);
+    EXPECT_EQ(set.found.size(), 2U);
+    expect_shows(set, plate.holes[0], true);
+    expect_shows(set, plate.outline, false);
+  }
 }
 
 TEST(CloudContours, FollowARoundPart) {

@@ -144,6 +144,28 @@ TEST(MeshContours, OfABoxAreItsSixFaces) {
   EXPECT_TRUE(mesh_contours(testing::box_mesh({10.0, 20.0, 30.0}), blunt).found.empty());
 }
 
+TEST(MeshContours, OfALongRodAreTheRimsOfItsEnds) {
+  // The round wall is far larger than the ends, and yet the rims are theirs.
+  TriangleMesh rod;
+  rod.vertices_mm = {{0.0, 0.0, 0.0}, {0.0, 0.0, 200.0}};
+  for (int k = 0; k < 48; ++k) {
+    const double angle = 2.0 * std::numbers::pi * (k / 2) / 24.0;
+    rod.vertices_mm.emplace_back(5.0 * std::cos(angle), 5.0 * std::sin(angle), k % 2 == 0 ? 0.0 : 200.0);
+  }
+  for (std::int32_t k = 0; k < 24; ++k) {
+    const std::int32_t a = 2 + 2 * k, b = 2 + 2 * ((k + 1) % 24);
+    rod.triangles.insert(rod.triangles.end(),
+                         {{0, b, a}, {1, a + 1, b + 1}, {a, b, b + 1}, {a, b + 1, a + 1}});
+  }
+  const ContourSet set = mesh_contours(rod, {});
+  ASSERT_EQ(set.found.size(), 2U);
+  for (const FoundContour& found : set.found) {
+    EXPECT_NEAR(found.min_bend_radius_mm, 5.0, 0.01);
+    const double outwards = found.contour.points_mm[0].z() > 100.0 ? 1.0 : -1.0;
+    for (const Eigen::Vector3d& n : found.contour.normals) EXPECT_NEAR(n.z(), outwards, 1e-12);
+  }
+}
+
 TEST(MeshContours, OfASmoothClosedMeshAreNone) {
   EXPECT_TRUE(mesh_contours(testing::sphere_mesh(50.0, 4), {}).found.empty());
   EXPECT_TRUE(mesh_contours({}, {}).found.empty());
@@ -253,6 +275,27 @@ TEST(MeshContours, MeasureTheSmallestBend) {
       EXPECT_NEAR(set.found[1].min_bend_radius_mm / corner_mm, 1.0, 0.2) << corner_mm;
     }
   }
+}
+
+TEST(MeshContours, HaveNoBendAtASharpCorner) {
+  for (const FoundContour& found : mesh_contours(testing::box_mesh({10.0, 20.0, 30.0}), {}).found)
+    EXPECT_EQ(found.min_bend_radius_mm, 0.0);
+}
+
+TEST(MeshContours, SeeASmallBendBetweenLongSides) {
+  // A fan over a long rectangle whose corners, rounded to 2 mm, have four chords each.
+  TriangleMesh mesh;
+  mesh.vertices_mm.emplace_back(0.0, 0.0, 0.0);
+  for (int corner = 0; corner < 4; ++corner)
+    for (int k = 0; k <= 4; ++k) {
+      const double angle = (corner + 0.25 * k) * 0.5 * std::numbers::pi;
+      mesh.vertices_mm.emplace_back((corner == 0 || corner == 3 ? 148.0 : -148.0) + 2.0 * std::cos(angle),
+                                    (corner < 2 ? 48.0 : -48.0) + 2.0 * std::sin(angle), 0.0);
+    }
+  for (std::int32_t i = 0; i < 20; ++i) mesh.triangles.push_back({0, 1 + i, 1 + (i + 1) % 20});
+  const ContourSet set = mesh_contours(mesh, {});
+  ASSERT_EQ(set.found.size(), 1U);
+  EXPECT_NEAR(set.found[0].min_bend_radius_mm, 2.0, 0.4);
 }
 
 TEST(ScanMeshContours, NameAHoleThatWasFilled) {
