@@ -25,7 +25,9 @@ RegistrationOptions on_threads(int threads) {
   return options;
 }
 
-ScanModel copy_of(const ScanModel& scan) { return scenes::moved(scan, RigidMotion::Identity()); }
+ScanModel copy_of(const ScanModel& scan) {
+  return scenes::moved(scan, RigidMotion::Identity());
+}
 
 scenes::Distance field_error(const CadModel& cad, const Trial& trial, const Registration& found) {
   return scenes::distance_between(
@@ -35,12 +37,11 @@ scenes::Distance field_error(const CadModel& cad, const Trial& trial, const Regi
 }
 
 scenes::Distance rigid_error(const CadModel& cad, const Trial& trial, const Registration& found) {
-  return scenes::distance_between(
-      scenes::carried(cad.contours[0], 2.0,
-                      [&](double, const Eigen::Vector3d& p) {
-                        return Eigen::Vector3d(found.rigid.scan_from_cad * p);
-                      }),
-      trial.true_curve_mm);
+  return scenes::distance_between(scenes::carried(cad.contours[0], 2.0,
+                                                  [&](double, const Eigen::Vector3d& p) {
+                                                    return Eigen::Vector3d(found.rigid.scan_from_cad * p);
+                                                  }),
+                                  trial.true_curve_mm);
 }
 
 TEST(RegisterPart, SameBytesForAnyThreadCount) {
@@ -78,7 +79,8 @@ TEST(RegisterPart, MovingTheScanMovesTheAnswerAndNothingElse) {
     double most_mm = 0.0;
     for (double s = 0.0; s < cad.contours[0].length_mm(); s += 10.0) {
       const Eigen::Vector3d p = cad.contours[0].point_mm(s);
-      most_mm = std::max(most_mm, (back * found.field->map(p).p_scan_mm - plain.field->map(p).p_scan_mm).norm());
+      most_mm =
+          std::max(most_mm, (back * found.field->map(p).p_scan_mm - plain.field->map(p).p_scan_mm).norm());
     }
     EXPECT_LT(most_mm, 1e-6) << far_mm;
   }
@@ -157,9 +159,9 @@ TEST_P(SlowFePart, HardScanIsCorrectedOrRefused) {
   }
 }
 
-// Nose cone: the job's own figures (75 % less than rigid ICP in the mean, 65 % in the peak). Sheet: at most 0.4 mm.
-// Porthole: 1,500 points over 70 mm, E = 0.6 mm, and one of three scans has a thin stretch: E and a quarter.
-// Hard scans lose 15 % of the contour, where only the splines' stiffness decides.
+// Nose cone: the job's own figures (75 % less than rigid ICP in the mean, 65 % in the peak). Sheet: at most
+// 0.4 mm. Porthole: 1,500 points over 70 mm, E = 0.6 mm, and one of three scans has a thin stretch: E and a
+// quarter. Hard scans lose 15 % of the contour, where only the splines' stiffness decides.
 INSTANTIATE_TEST_SUITE_P(All, SlowFePart,
                          testing::Values(Bounds{"nosecone", 1.0, 0.4, 0.25, 0.35, 2.5, 0.9},
                                          Bounds{"sheet", 1.0, 0.4, 0.25, 0.35, 2.0, 0.4},

@@ -22,7 +22,9 @@ synthetic::PlateShape bent(bool straight) {
 class FieldOfPlate : public testing::Test {
  protected:
   std::vector<ContourResult> results() const {
-    const EdgeData data{trial_.scan.edge_mm, 0.1};
+    EdgeData data;
+    data.points_mm = trial_.scan.edge_mm;
+    data.sigma_across_mm = 0.1;
     std::vector<ContourMotion> motions =
         subdivision_icp(cad_, trial_.scan, data, trial_.scan_from_cad, SubdivisionIcpOptions());
     EdgeFit edge = fit_edge(cad_, 0, trial_.scan, motions[0], {});

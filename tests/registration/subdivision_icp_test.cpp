@@ -23,7 +23,12 @@ class SubdivisionIcpOnPlate : public testing::Test {
     return out;
   }
   /// The true edge, sampled, as edge data.
-  EdgeData edge_data(const Trial& trial) const { return {trial.scan.edge_mm, 0.1}; }
+  EdgeData edge_data(const Trial& trial) const {
+    EdgeData data;
+    data.points_mm = trial.scan.edge_mm;
+    data.sigma_across_mm = 0.1;
+    return data;
+  }
   RigidMotion rigid(const Trial& trial) const {
     return icp_point_to_plane(cad_, trial.scan, trial.scan_from_cad, {}).scan_from_cad;
   }
