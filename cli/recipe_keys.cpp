@@ -138,7 +138,6 @@ std::vector<Key> contour_keys(Recipe::Contour& contour) {
 }
 
 std::vector<Key> toolpath_keys(Recipe::Toolpath& path) {
-  Recipe::FromContour& made = path.from_contour;
   return {
       {.name = "toolpath.file",
        .slot = &path.file,
@@ -169,6 +168,11 @@ std::vector<Key> toolpath_keys(Recipe::Toolpath& path) {
        .about = "rows farther from the part are air moves, and follow the nearest row that is not",
        .min = 0.01,
        .max = 10000.0},
+  };
+}
+
+std::vector<Key> from_contour_keys(Recipe::FromContour& made) {
+  return {
       {.name = "toolpath.from_contour.offset_mm",
        .slot = &made.offset_mm,
        .about = "shift of the path from the contour, in the surface, positive towards the void",
@@ -221,7 +225,6 @@ std::vector<Key> toolpath_keys(Recipe::Toolpath& path) {
 }
 
 std::vector<Key> registration_keys(Recipe::Registration& registration) {
-  Recipe::Subdivision& s = registration.subdivision;
   return {
       {.name = "registration.method",
        .slot = &registration.method,
@@ -238,6 +241,11 @@ std::vector<Key> registration_keys(Recipe::Registration& registration) {
        .about = "longest stretch of contour that the scan may miss; more is refused",
        .min = 0.0,
        .max = 1e5},
+  };
+}
+
+std::vector<Key> subdivision_keys(Recipe::Subdivision& s) {
+  return {
       {.name = "registration.subdivision.corner_radius_max_mm",
        .slot = &s.corner_radius_max_mm,
        .about = "a contour that bends tighter is divided there (the paper's rho_T)",
@@ -343,7 +351,9 @@ std::vector<Key> recipe_keys(Recipe& recipe) {
   add(scan_keys(recipe.scan));
   add(contour_keys(recipe.contour));
   add(toolpath_keys(recipe.toolpath));
+  add(from_contour_keys(recipe.toolpath.from_contour));
   add(registration_keys(recipe.registration));
+  add(subdivision_keys(recipe.registration.subdivision));
   add(tolerance_keys(recipe.tolerance));
   add({{.name = "robot.controller",
         .slot = &recipe.robot.controller,
