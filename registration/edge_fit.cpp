@@ -17,6 +17,7 @@ constexpr double kStrayShare = 0.02;    // of the density: points beyond the edg
 constexpr double kGateSigmas = 4.0;     // height residual of a point that takes part in the edge
 constexpr double kPointsPerBin = 8.0;
 constexpr int kRounds = 30;
+constexpr double kLeastExpectedRatio = 0.5;  // of the scan's median density, beside the contour
 constexpr double kEdgeLimitLengthMm = 50.0;  // an edge is known up to a smooth shift over about this length
 constexpr double kGapBendPerMm = 5e-4;       // how much a part may bend between the two sides of a gap
 constexpr std::size_t kChunk = 512;
@@ -205,7 +206,10 @@ class EdgeFitter {
     double inliers = 0.0;
     for (const StripPoint& p : points_)
       if (p.inlier && p.across_mm > -scan_.spacing_mm && p.across_mm < strip_mm_) inliers += p.curve_weight;
-    const double mean_per_mm = std::max(1e-9, inliers / curve_.length_mm());
+    // Where most of the contour is missing the scan's own spacing still says what to expect.
+    const double expected_per_mm =
+        kLeastExpectedRatio * strip_mm_ / std::max(1e-9, scan_.spacing_mm * scan_.spacing_mm);
+    const double mean_per_mm = std::max({1e-9, inliers / curve_.length_mm(), expected_per_mm});
     const double bin_mm = std::clamp(kPointsPerBin / mean_per_mm, 2.0, curve_.length_mm() / 8.0);
     const std::size_t bins = static_cast<std::size_t>(std::floor(curve_.length_mm() / bin_mm));
     fit_.bin_mm = curve_.length_mm() / static_cast<double>(bins);
@@ -216,7 +220,9 @@ class EdgeFitter {
       all[b] += p.curve_weight;
       if (p.across_mm < 0.5 * strip_mm_) near[b] += p.curve_weight;
     }
-    const double usual = median_of(all), usual_near = median_of(near);
+    const double expected = expected_per_mm * fit_.bin_mm;
+    const double usual = std::max(median_of(all), expected);
+    const double usual_near = std::max(median_of(near), 0.5 * expected);
     fit_.seen.assign(bins, 1);
     for (std::size_t b = 0; b < bins; ++b)
       if (near[b] < 0.2 * usual_near || all[b] < 0.2 * usual) fit_.seen[b] = 0;

@@ -13,7 +13,7 @@ constexpr double kSharpenedSigmaRatio = 0.1;  // scatter of the edge by support,
 constexpr int kSharpeningPasses = 2;
 constexpr double kRigidStartLooseness = 8.0;
 constexpr double kSampleMm = 2.0;
-constexpr double kSeamMm = 1.5, kSeamEdgeLimits = 3.0;      // how far segments may disagree: bending, and the edge limit
+constexpr double kSeamMm = 2.5, kSeamEdgeLimits = 3.0;      // how far segments may disagree: bending, and the edge limit
 constexpr double kResidualMm = 0.15, kResidualSigmas = 5.0;  // of the height beside the edge
 
 /// Turns an undecided scan to the side that the start pose chose.
