@@ -53,7 +53,8 @@ fs::path fixtures_folder() {
                                        "set ARRIS_FIXTURES to the fixtures folder of the checkout"});
 }
 
-/// A scan as a shop would get it: noise, walls of the cut, strays, a gap, uneven density, turned on its fixture.
+/// A scan as a shop would get it: noise, walls of the cut, strays, a gap, uneven density, turned on its
+/// fixture.
 synthetic::SyntheticScan demo_scan(const synthetic::FePart& part) {
   synthetic::ScanOptions options;
   options.points = 60000;

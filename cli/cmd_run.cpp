@@ -39,7 +39,8 @@ std::string utc(std::time_t time) {
   return text;
 }
 
-/// The date that results carry: SOURCE_DATE_EPOCH, else the scan file's time, so that equal runs give equal bytes.
+/// The date that results carry: SOURCE_DATE_EPOCH, else the scan file's time, so that equal runs give equal
+/// bytes.
 std::string report_time(const fs::path& scan) {
   if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH"); epoch != nullptr && *epoch != '\0')
     return utc(static_cast<std::time_t>(std::strtoll(epoch, nullptr, 10)));
@@ -55,8 +56,8 @@ class Journal {
     times_.threads = args.threads > 0 ? args.threads : static_cast<int>(std::thread::hardware_concurrency());
     times_.run_id = std::to_string(std::chrono::system_clock::now().time_since_epoch().count()) + "-" +
                     std::to_string(::getpid());
-    times_.command_line = std::string("arris ") + (args.inspect_only ? "inspect " : "run ") + args.recipe.string() +
-                          " --scan " + args.scan.string();
+    times_.command_line = std::string("arris ") + (args.inspect_only ? "inspect " : "run ") +
+                          args.recipe.string() + " --scan " + args.scan.string();
   }
 
   void stage(const std::string& what) {
@@ -75,7 +76,8 @@ class Journal {
     close_stage();
     times_.finished = utc(std::time(nullptr));
     times_.total_s = seconds_since(began_);
-    return {{"run.json", report::write_run_json(times_, result_hash)}, {"log.jsonl", report::write_log_jsonl(log_)}};
+    return {{"run.json", report::write_run_json(times_, result_hash)},
+            {"log.jsonl", report::write_log_jsonl(log_)}};
   }
 
   [[nodiscard]] double total_s() const { return seconds_since(began_); }
@@ -123,16 +125,20 @@ std::optional<ContourChoice> operators_choice(const RunArgs& args, const Recipe&
   if (recipe.contour.validation == "operator")
     throw Error(Fault::kInput, {.what = "the recipe asks for contours that an operator has accepted",
                                 .needed = "--contours FILE",
-                                .next = "make it: arris contours " + args.scan.string() + " --accept .. --out contours.json"});
+                                .next = "make it: arris contours " + args.scan.string() +
+                                        " --accept .. --out contours.json"});
   return std::nullopt;
 }
 
-fs::path default_out(const fs::path& scan) { return scan.stem().string() + ".arris"; }
+fs::path default_out(const fs::path& scan) {
+  return scan.stem().string() + ".arris";
+}
 
 std::string why_no_program(const RunArgs& args, const RunRecord& record, bool has_cell) {
   if (args.inspect_only) return "an inspection has no tool path";
   if (!record.accepted()) return "refused: no corrected path and no robot program are handed out";
-  if (!has_cell) return "no cell is given ([cell] file in the recipe, or --cell): no robot program was written";
+  if (!has_cell)
+    return "no cell is given ([cell] file in the recipe, or --cell): no robot program was written";
   return "";
 }
 
@@ -168,7 +174,8 @@ int run_main_job(const RunArgs& args) {
   if (record.program_note.empty()) {
     record.program_written = true;
     programs = robot_programs(record, *cell, spin_from_name(recipe.toolpath.spin));
-    for (const auto& [name, bytes] : programs) record.program_note += (record.program_note.empty() ? "" : ", ") + name;
+    for (const auto& [name, bytes] : programs)
+      record.program_note += (record.program_note.empty() ? "" : ", ") + name;
   }
   for (const std::string& reason : record.refusals) journal.log("warning", reason);
   fill(folder, result_files(record));

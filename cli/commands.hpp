@@ -13,8 +13,8 @@ namespace arris {
 struct ContoursArgs {
   std::filesystem::path file;
   std::optional<std::filesystem::path> recipe, out, png;
-  std::vector<int> accept;   ///< ids the operator accepts; the others are rejected
-  std::string units;  ///< of the file, when no recipe says; empty: mm
+  std::vector<int> accept;  ///< ids the operator accepts; the others are rejected
+  std::string units;        ///< of the file, when no recipe says; empty: mm
   bool json = false;
   int threads = 0;
 };

@@ -17,14 +17,15 @@
 namespace arris {
 namespace {
 
-constexpr double kOnEdgeMm = 1.0;        // a contour file lies on the CAD's edge within this
+constexpr double kOnEdgeMm = 1.0;  // a contour file lies on the CAD's edge within this
 constexpr double kLengthAgreesRatio = 0.05;
 
 double signed_volume_mm3(const TriangleMesh& mesh) {
   double six_volumes = 0.0;
   for (const auto& t : mesh.triangles)
     six_volumes += mesh.vertices_mm[static_cast<std::size_t>(t[0])].dot(
-        mesh.vertices_mm[static_cast<std::size_t>(t[1])].cross(mesh.vertices_mm[static_cast<std::size_t>(t[2])]));
+        mesh.vertices_mm[static_cast<std::size_t>(t[1])].cross(
+            mesh.vertices_mm[static_cast<std::size_t>(t[2])]));
   return six_volumes / 6.0;
 }
 
@@ -37,8 +38,9 @@ double signed_volume_mm3(const TriangleMesh& mesh) {
 }
 
 /// Normals of a path or contour against those of the mesh: most must agree.
-void check_facing(const Recipe& recipe, const SurfaceQuery& surface, const std::vector<Eigen::Vector3d>& points_mm,
-                  const std::vector<Eigen::Vector3d>& normals, const std::string& what) {
+void check_facing(const Recipe& recipe, const SurfaceQuery& surface,
+                  const std::vector<Eigen::Vector3d>& points_mm, const std::vector<Eigen::Vector3d>& normals,
+                  const std::string& what) {
   std::size_t agree = 0, against = 0;
   const std::size_t stride = std::max<std::size_t>(1, points_mm.size() / 200);
   for (std::size_t i = 0; i < points_mm.size() && i < normals.size(); i += stride) {
@@ -73,14 +75,16 @@ const FoundContour& loop_under(const Recipe& recipe, const ContourSet& loops, co
     const std::size_t stride = std::max<std::size_t>(1, wanted.points_mm.size() / 100);
     for (std::size_t i = 0; i < wanted.points_mm.size(); i += stride)
       worst_mm = std::max(worst_mm, curve.nearest(wanted.points_mm[i]).distance_mm);
-    if (worst_mm < kOnEdgeMm && std::abs(length - loop.length_mm) < kLengthAgreesRatio * loop.length_mm) return loop;
+    if (worst_mm < kOnEdgeMm && std::abs(length - loop.length_mm) < kLengthAgreesRatio * loop.length_mm)
+      return loop;
     nearest_mm = std::min(nearest_mm, worst_mm);
   }
-  throw Error(Fault::kInput, {.what = "the contour lies on no edge of the CAD",
-                              .where = recipe.contour.file.string(),
-                              .found = std::to_string(nearest_mm) + " mm from the nearest of the CAD's contours",
-                              .needed = "at most " + std::to_string(kOnEdgeMm) + " mm, over the whole loop",
-                              .next = "list the CAD's contours: arris contours " + recipe.part.cad.string()});
+  throw Error(Fault::kInput,
+              {.what = "the contour lies on no edge of the CAD",
+               .where = recipe.contour.file.string(),
+               .found = std::to_string(nearest_mm) + " mm from the nearest of the CAD's contours",
+               .needed = "at most " + std::to_string(kOnEdgeMm) + " mm, over the whole loop",
+               .next = "list the CAD's contours: arris contours " + recipe.part.cad.string()});
 }
 
 std::vector<Contour> accepted_by_id(const Recipe& recipe, const ContourSet& loops) {
@@ -98,14 +102,16 @@ std::vector<Contour> accepted_by_id(const Recipe& recipe, const ContourSet& loop
       return std::find(ids.begin(), ids.end(), loop.contour.id) != ids.end();
     };
     const bool by_rejection = recipe.contour.accept.empty() && !recipe.contour.reject.empty();
-    if (by_rejection ? !named(recipe.contour.reject) : named(recipe.contour.accept)) accepted.push_back(loop.contour);
+    if (by_rejection ? !named(recipe.contour.reject) : named(recipe.contour.accept))
+      accepted.push_back(loop.contour);
   }
   if (recipe.contour.accept.empty() && recipe.contour.reject.empty() && loops.found.size() == 1)
     accepted.push_back(loops.found.front().contour);
   return accepted;
 }
 
-std::vector<Contour> accepted_contours(const Recipe& recipe, const ContourSet& loops, const SurfaceQuery& surface) {
+std::vector<Contour> accepted_contours(const Recipe& recipe, const ContourSet& loops,
+                                       const SurfaceQuery& surface) {
   if (loops.found.empty())
     throw Error(Fault::kInput, {.what = "the CAD has no contour",
                                 .where = recipe.part.cad.string(),
@@ -130,13 +136,15 @@ std::vector<Contour> accepted_contours(const Recipe& recipe, const ContourSet& l
   return accepted;
 }
 
-ToolPath read_path(const Recipe& recipe, const std::vector<Contour>& accepted, std::vector<std::string>& notes) {
+ToolPath read_path(const Recipe& recipe, const std::vector<Contour>& accepted,
+                   std::vector<std::string>& notes) {
   if (recipe.toolpath.from_contour.given) return path_from_contours(accepted, from_contour_options(recipe));
   if (recipe.toolpath.file.empty())
     throw Error(Fault::kRecipe, {.what = "the recipe names no tool path",
                                  .needed = "toolpath.file or [toolpath.from_contour]",
                                  .next = "to judge the shape alone: arris inspect"});
-  PathCsv read = read_path_csv(read_text_file(recipe.toolpath.file, "tool path"), recipe.toolpath.file.string());
+  PathCsv read =
+      read_path_csv(read_text_file(recipe.toolpath.file, "tool path"), recipe.toolpath.file.string());
   notes.insert(notes.end(), read.notes.begin(), read.notes.end());
   for (PathPoint& point : read.path.points)
     if (point.feed_mm_s == 0.0) point.feed_mm_s = recipe.toolpath.feed_mm_s;
@@ -151,7 +159,8 @@ Drawing read_drawing(const Recipe& recipe, bool want_path, int threads) {
   ContourSet loops = mesh_contours(drawing.mesh, contour_options(recipe, threads));
   drawing.notes = loops.notes;
   const bool closed = loops.found.empty() || loops.found.front().contour.source != "boundary";
-  if (closed && signed_volume_mm3(drawing.mesh) < 0.0) refuse_inverted(recipe, "a closed mesh of negative volume");
+  if (closed && signed_volume_mm3(drawing.mesh) < 0.0)
+    refuse_inverted(recipe, "a closed mesh of negative volume");
   const SurfaceQuery surface(drawing.mesh);
   drawing.accepted = accepted_contours(recipe, loops, surface);
   for (const FoundContour& loop : loops.found)

@@ -14,16 +14,17 @@ namespace arris {
 /// The drawing and what the recipe takes from it: frame Cad, mm.
 struct Drawing {
   TriangleMesh mesh;
-  std::vector<Contour> accepted;   ///< loops of the mesh that the recipe accepts
-  std::vector<Contour> others;     ///< its loops that are not accepted
-  ToolPath path;                   ///< empty when none was asked for
+  std::vector<Contour> accepted;  ///< loops of the mesh that the recipe accepts
+  std::vector<Contour> others;    ///< its loops that are not accepted
+  ToolPath path;                  ///< empty when none was asked for
   std::vector<std::string> notes;
 };
 
 /// Reads the CAD, its contours and the nominal tool path, and refuses what cannot be right.
-///   throws  Error(kInput / kRecipe): files; an inverted mesh (a closed one with negative volume, or normals against
-///           the axes of path and contour file); no contour, or several and none accepted; an unknown id; a contour
-///           file that lies on no edge of the CAD; no tool path although one is wanted
+///   throws  Error(kInput / kRecipe): files; an inverted mesh (a closed one with negative volume, or normals
+///   against
+///           the axes of path and contour file); no contour, or several and none accepted; an unknown id; a
+///           contour file that lies on no edge of the CAD; no tool path although one is wanted
 [[nodiscard]] Drawing read_drawing(const Recipe& recipe, bool want_path, int threads);
 
 }  // namespace arris

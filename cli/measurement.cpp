@@ -19,7 +19,8 @@ void use_choice(const ContourChoice& choice, const Eigen::Vector3d& offset_mm, S
   for (std::size_t l = 0; l < model.loops.size(); ++l)
     for (const Contour& contour : accepted)
       for (const Eigen::Vector3d& p : contour.points_mm)
-        if ((p - offset_mm - model.loops[l].points_mm.front()).norm() < kSamePointMm) model.loop_rejected[l] = 0;
+        if ((p - offset_mm - model.loops[l].points_mm.front()).norm() < kSamePointMm)
+          model.loop_rejected[l] = 0;
 }
 
 void note_loops(const PreparedScan& prepared, std::vector<std::string>& notes) {
@@ -42,7 +43,8 @@ Measurement read_measurement(const Recipe& recipe, const std::filesystem::path& 
   measurement.points_nonfinite = scan.dropped_nonfinite;
   measurement.notes = scan.notes;
   measurement.kept.assign(scan.cloud.size(), 1);
-  if (!scan.is_mesh()) {  // a mesh was cleaned by the scanner's own software, and its triangles need every vertex
+  if (!scan.is_mesh()) {  // a mesh was cleaned by the scanner's own software, and its triangles need every
+                          // vertex
     Cleaned cleaned = clean(scan.cloud, clean_options(recipe, threads));
     measurement.points_outlier = cleaned.dropped_outliers;
     measurement.points_voxel = cleaned.dropped_by_voxel;
@@ -56,7 +58,8 @@ Measurement read_measurement(const Recipe& recipe, const std::filesystem::path& 
   options.contour = contour_options(recipe, threads);
   options.threads = threads;
   if (recipe.scan.seen_from.size() == 3)
-    options.seen_from_mm = Eigen::Vector3d(recipe.scan.seen_from[0], recipe.scan.seen_from[1], recipe.scan.seen_from[2]);
+    options.seen_from_mm =
+        Eigen::Vector3d(recipe.scan.seen_from[0], recipe.scan.seen_from[1], recipe.scan.seen_from[2]);
   measurement.prepared = prepare_scan(scan, options);
   note_loops(measurement.prepared, measurement.notes);
   if (choice) use_choice(*choice, scan.cloud.offset_mm, measurement.prepared.model);

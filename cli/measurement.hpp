@@ -14,7 +14,8 @@ namespace arris {
 /// The scan as the run uses it.
 struct Measurement {
   PointCloud cloud;  ///< as read, without points that are not finite; frame Scan about its offset
-  std::vector<char> kept;  ///< one a point of cloud: 0 for what cleaning dropped, which is shown and not judged
+  std::vector<char>
+      kept;  ///< one a point of cloud: 0 for what cleaning dropped, which is shown and not judged
   PreparedScan prepared;
   std::size_t points_nonfinite = 0, points_outlier = 0, points_voxel = 0;
   std::vector<std::string> notes;

@@ -23,10 +23,11 @@ constexpr double kMirrorAlikeRatio = 1.3;  // score of the mirror image over the
 /// What makes a start pose impossible because the input is wrong, not because the data are poor.
 void refuse_wrong_input(const CoarseAlignment& coarse, const Recipe& recipe) {
   if (coarse.mirrored)
-    throw Error(Fault::kInput, {.what = "the scan is mirrored",
-                                .found = "its mirror image fits the part, the scan itself does not",
-                                .needed = "a right-handed scan of this part",
-                                .next = "export the scan again without mirroring, or take the drawing of the other hand"});
+    throw Error(Fault::kInput,
+                {.what = "the scan is mirrored",
+                 .found = "its mirror image fits the part, the scan itself does not",
+                 .needed = "a right-handed scan of this part",
+                 .next = "export the scan again without mirroring, or take the drawing of the other hand"});
   if (coarse.no_points)
     throw Error(Fault::kInput, {.what = "no points in the band",
                                 .found = "no scan point near the part at the initial pose",
@@ -42,7 +43,8 @@ void refuse_wrong_input(const CoarseAlignment& coarse, const Recipe& recipe) {
                               .next = "set scan.units in the recipe, or export the scan again"});
 }
 
-void describe_inputs(const Recipe& recipe, const Drawing& drawing, const Measurement& measurement, RunRecord& record) {
+void describe_inputs(const Recipe& recipe, const Drawing& drawing, const Measurement& measurement,
+                     RunRecord& record) {
   record.part_number = recipe.part.number;
   record.version = version();
   record.state = recipe.part.state;
@@ -72,7 +74,8 @@ RegistrationOptions local_options(const Recipe& recipe, const Eigen::Vector3d& o
   return options;
 }
 
-void describe_alignment(const Registration& found, const Measurement& measurement, AlignmentSummary& alignment) {
+void describe_alignment(const Registration& found, const Measurement& measurement,
+                        AlignmentSummary& alignment) {
   alignment.scan_from_cad = found.rigid.scan_from_cad;
   if (!found.usable()) alignment.scan_from_cad = found.coarse.scan_from_cad;
   alignment.scan_from_cad.pretranslate(measurement.cloud.offset_mm);
@@ -114,8 +117,8 @@ void describe_loops(const Registration& found, const ScanModel& scan, RunRecord&
 
 }  // namespace
 
-Processed process(const Recipe& recipe, const Drawing& drawing, Measurement& measurement, bool inspect_only, int threads,
-                  const StageHook& stage) {
+Processed process(const Recipe& recipe, const Drawing& drawing, Measurement& measurement, bool inspect_only,
+                  int threads, const StageHook& stage) {
   Processed processed;
   RunRecord& record = processed.record;
   record.has_toolpath = !inspect_only;
@@ -124,7 +127,8 @@ Processed process(const Recipe& recipe, const Drawing& drawing, Measurement& mea
   stage("aligning");
   const CadModel cad = prepare_cad(drawing.mesh, drawing.accepted, drawing.others);
   ScanModel& scan = measurement.prepared.model;
-  const Registration found = register_part(cad, scan, local_options(recipe, measurement.cloud.offset_mm, threads));
+  const Registration found =
+      register_part(cad, scan, local_options(recipe, measurement.cloud.offset_mm, threads));
   refuse_wrong_input(found.coarse, recipe);
   record.refusals = found.refusals;
   if (found.coarse.mirror_ratio > 0.0 && found.coarse.mirror_ratio < kMirrorAlikeRatio)
@@ -140,14 +144,15 @@ Processed process(const Recipe& recipe, const Drawing& drawing, Measurement& mea
 
   if (!inspect_only) {
     stage("correcting the path");
-    record.correction =
-        correct(drawing.path, cad.surface, *found.field, found.rigid.scan_from_cad, correct_options(recipe, threads));
-    record.refusals.insert(record.refusals.end(), record.correction.reasons.begin(), record.correction.reasons.end());
+    record.correction = correct(drawing.path, cad.surface, *found.field, found.rigid.scan_from_cad,
+                                correct_options(recipe, threads));
+    record.refusals.insert(record.refusals.end(), record.correction.reasons.begin(),
+                           record.correction.reasons.end());
     record.notes.insert(record.notes.end(), record.correction.notes.begin(), record.correction.notes.end());
   }
   stage("measuring deviations");
-  record.deviation_mm = signed_deviation_mm(cad.surface, found.rigid.scan_from_cad, measurement.cloud.points_mm,
-                                            kDeviationReachMm, threads);
+  record.deviation_mm = signed_deviation_mm(cad.surface, found.rigid.scan_from_cad,
+                                            measurement.cloud.points_mm, kDeviationReachMm, threads);
   for (std::size_t i = 0; i < record.deviation_mm.size(); ++i)
     if (!measurement.kept[i]) record.deviation_mm[i] = std::numeric_limits<float>::quiet_NaN();
   judge_results(cad, found, record);

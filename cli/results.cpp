@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSampleMm = 2.0;
 constexpr double kSurfaceLimitRadiusMm = 10.0;
-constexpr double kExpanded = 2.0;             // k
+constexpr double kExpanded = 2.0;  // k
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 ContourError error_along(const CadModel& cad, std::size_t c, const Registration& found) {
@@ -40,7 +40,8 @@ double worst_edge_sd_mm(const Registration& found) {
   for (const ContourResult& contour : found.contours) {
     const Curve& curve = contour.motion.nominal();
     for (double s_mm = 0.0; s_mm < curve.length_mm(); s_mm += kSampleMm)
-      if (contour.edge.seen_at(s_mm)) worst = std::max(worst, contour.edge.sd_across_mm(s_mm, curve.closed()));
+      if (contour.edge.seen_at(s_mm))
+        worst = std::max(worst, contour.edge.sd_across_mm(s_mm, curve.closed()));
   }
   return worst;
 }
@@ -49,11 +50,12 @@ void judge_shape(RunRecord& record) {
   record.as_scanned = report::deviation_statistics(record.deviation_mm, record.surface_profile_mm);
   const double largest_mm = report::max_abs_mm(record.as_scanned);
   if (record.state == "free") {
-    record.judged_as_scanned = report::judge_profile(largest_mm, record.surface_profile_mm,
-                                                     2.0 * kExpanded * record.noise_sigma_mm,
-                                                     "scan against CAD after the rigid alignment");
+    record.judged_as_scanned =
+        report::judge_profile(largest_mm, record.surface_profile_mm, 2.0 * kExpanded * record.noise_sigma_mm,
+                              "scan against CAD after the rigid alignment");
   } else {
-    record.judged_as_scanned = report::not_judged(largest_mm, record.surface_profile_mm, "as clamped, not judged");
+    record.judged_as_scanned =
+        report::not_judged(largest_mm, record.surface_profile_mm, "as clamped, not judged");
   }
 }
 
@@ -61,22 +63,26 @@ void judge_edge(const Registration& found, RunRecord& record) {
   std::vector<double> across_mm;
   for (const ContourError& error : record.contour_errors)
     across_mm.insert(across_mm.end(), error.across_mm.begin(), error.across_mm.end());
-  record.pulled_back = report::deviation_statistics(std::span<const double>(across_mm), record.contour_profile_mm);
+  record.pulled_back =
+      report::deviation_statistics(std::span<const double>(across_mm), record.contour_profile_mm);
   const double largest_mm = report::max_abs_mm(record.pulled_back);
-  const std::string what = record.method == "rigid"
-                               ? "found edge against the nominal carried rigidly"
-                               : "found edge against the nominal carried by the segments (an error longer than a "
-                                 "segment is followed, and not seen here)";
+  const std::string what =
+      record.method == "rigid"
+          ? "found edge against the nominal carried rigidly"
+          : "found edge against the nominal carried by the segments (an error longer than a "
+            "segment is followed, and not seen here)";
   record.judged_pulled_back =
-      record.state == "free"
-          ? report::not_judged(largest_mm, record.contour_profile_mm, "the edge's own error, shown; the free shape is judged")
-          : report::judge_profile(largest_mm, record.contour_profile_mm, 2.0 * kExpanded * worst_edge_sd_mm(found), what);
+      record.state == "free" ? report::not_judged(largest_mm, record.contour_profile_mm,
+                                                  "the edge's own error, shown; the free shape is judged")
+                             : report::judge_profile(largest_mm, record.contour_profile_mm,
+                                                     2.0 * kExpanded * worst_edge_sd_mm(found), what);
 }
 
 }  // namespace
 
 void judge_results(const CadModel& cad, const Registration& found, RunRecord& record) {
-  for (std::size_t c = 0; c < cad.contours.size(); ++c) record.contour_errors.push_back(error_along(cad, c, found));
+  for (std::size_t c = 0; c < cad.contours.size(); ++c)
+    record.contour_errors.push_back(error_along(cad, c, found));
   for (const ContourResult& contour : found.contours)
     record.edge_limit_mm = std::max(record.edge_limit_mm, contour.edge.edge_limit_mm());
   const double density = std::max(found.density_per_mm2, 1e-12);

@@ -26,8 +26,9 @@ NamedBytes rapid_module(const RunRecord& record, const Cell& cell, Spin spin, bo
   const std::string name = dry_run ? "program_dry.mod" : "program.mod";
   const std::vector<std::string> wrong = differences(program, read_rapid(text, name), hash);
   if (!wrong.empty())
-    throw Error(Fault::kBug, {.what = "the robot program does not read back as the path", .where = name,
-                              .found = wrong.front()});
+    throw Error(
+        Fault::kBug,
+        {.what = "the robot program does not read back as the path", .where = name, .found = wrong.front()});
   return {name, std::move(text)};
 }
 

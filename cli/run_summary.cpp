@@ -31,10 +31,11 @@ void print_summary(const RunRecord& record, const std::filesystem::path& folder,
   console::print("inspection   " + report::verdict_word(record.inspection_verdict()));
   const report::ContourErrorSummary errors = report::contour_error_summary(record.contour_errors);
   if (errors.rigid.count > 0) {
-    console::print(line("found edge   mean %.3f mm, max %.3f mm from the nominal placed rigidly", errors.rigid.mean_mm,
-                        errors.rigid.max_mm));
-    console::print(line("             mean %.3f mm, max %.3f mm after %s; a scan this dense shows an edge to %.3f mm",
-                        errors.after.mean_mm, errors.after.max_mm, record.method.c_str(), record.edge_limit_mm));
+    console::print(line("found edge   mean %.3f mm, max %.3f mm from the nominal placed rigidly",
+                        errors.rigid.mean_mm, errors.rigid.max_mm));
+    console::print(
+        line("             mean %.3f mm, max %.3f mm after %s; a scan this dense shows an edge to %.3f mm",
+             errors.after.mean_mm, errors.after.max_mm, record.method.c_str(), record.edge_limit_mm));
   }
   for (const std::string& free : record.alignment.free_directions) console::print("not determined: " + free);
   for (const std::string& step : report::next_steps(record)) console::print("next         " + step);

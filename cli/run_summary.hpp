@@ -6,7 +6,8 @@
 
 namespace arris {
 
-/// The outcome on stdout: verdicts in words, the numbers that decide, where the files are; one object with json.
+/// The outcome on stdout: verdicts in words, the numbers that decide, where the files are; one object with
+/// json.
 void print_summary(const RunRecord& record, const std::filesystem::path& folder, double total_s, bool json);
 
 }  // namespace arris

@@ -24,7 +24,8 @@ SplineRow ArcSpline::at(double arc_mm) const {
   SplineRow row;
   row.value = {u * u * u / 6.0, (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
                (-3.0 * t * t * t + 3.0 * t * t + 3.0 * t + 1.0) / 6.0, t * t * t / 6.0};
-  for (int k = 0; k < 4; ++k) row.index[static_cast<std::size_t>(k)] = closed_ ? (piece + k) % size_ : piece + k;
+  for (int k = 0; k < 4; ++k)
+    row.index[static_cast<std::size_t>(k)] = closed_ ? (piece + k) % size_ : piece + k;
   return row;
 }
 

@@ -21,10 +21,11 @@ constexpr std::size_t kRefined = 4;            // candidates a hypothesis that a
 constexpr double kFreeEigenvalueRatio = 1e-4;  // methods: slippage, Gelfand and Guibas 2003
 constexpr double kEdgeKept = 0.75, kSurfaceKept = 0.9;
 constexpr std::size_t kLoopSample = 12;
-constexpr double kMirrorBetterRatio = 0.6;      // of the scores beyond what the point spacing alone leaves
+constexpr double kMirrorBetterRatio = 0.6;       // of the scores beyond what the point spacing alone leaves
 constexpr double kMirrorOfAmbiguousRatio = 0.8;  // of the scores, when two poses fit alike
-constexpr double kExtentsAgree[] = {0.8, 15.0};  // of scan and contour: no wrong unit is needed to explain them
-constexpr double kScaledExtentMost = 6.0;         // and in another unit only this far from the contour's
+constexpr double kExtentsAgree[] = {0.8,
+                                    15.0};  // of scan and contour: no wrong unit is needed to explain them
+constexpr double kScaledExtentMost = 6.0;   // and in another unit only this far from the contour's
 constexpr std::size_t kLongestLoops = 3;
 constexpr double kInitialFitsRatio = 0.08;  // of the contour's size: a long side on a short one leaves more
 constexpr double kUnitRatios[] = {25.4, 1000.0, 1.0 / 25.4, 1.0 / 1000.0};
@@ -39,9 +40,15 @@ std::vector<T> every(const std::vector<T>& values, std::size_t count) {
 
 /// A small copy of the scan for scoring: as it is, with the other side up, or mirrored in x.
 ScanModel hypothesis(const ScanModel& scan, bool flip, bool mirror) {
-  ScanModel light{every(scan.points_mm, 8 * kSurfaceSample), every(scan.normals, 8 * kSurfaceSample),
-                  NearestPoints({}), scan.loops, every(scan.edge_mm, kEdgeScored),
-                  every(scan.edge_normals, kEdgeScored), scan.spacing_mm, scan.noise_sigma_mm, SideKnown::kYes};
+  ScanModel light{every(scan.points_mm, 8 * kSurfaceSample),
+                  every(scan.normals, 8 * kSurfaceSample),
+                  NearestPoints({}),
+                  scan.loops,
+                  every(scan.edge_mm, kEdgeScored),
+                  every(scan.edge_normals, kEdgeScored),
+                  scan.spacing_mm,
+                  scan.noise_sigma_mm,
+                  SideKnown::kYes};
   const auto reflect = [](Eigen::Vector3d& p) { p.x() = -p.x(); };
   const auto negate = [](Eigen::Vector3d& n) { n = -n; };
   if (mirror) {
@@ -53,7 +60,8 @@ ScanModel hypothesis(const ScanModel& scan, bool flip, bool mirror) {
     }
   }
   if (flip) {
-    for (auto* list : {&light.normals, &light.edge_normals}) std::for_each(list->begin(), list->end(), negate);
+    for (auto* list : {&light.normals, &light.edge_normals})
+      std::for_each(list->begin(), list->end(), negate);
     for (Contour& loop : light.loops) std::for_each(loop.normals.begin(), loop.normals.end(), negate);
   }
   if (flip != mirror)
@@ -67,7 +75,8 @@ ScanModel hypothesis(const ScanModel& scan, bool flip, bool mirror) {
 /// Mean of the smallest share of the values: what a gap or a clamp adds is not judged.
 double trimmed_mean(std::vector<double>& values, double kept_ratio) {
   std::sort(values.begin(), values.end());
-  const std::size_t kept = std::max<std::size_t>(1, static_cast<std::size_t>(kept_ratio * double(values.size())));
+  const std::size_t kept =
+      std::max<std::size_t>(1, static_cast<std::size_t>(kept_ratio * double(values.size())));
   double sum = 0.0;
   for (std::size_t i = 0; i < kept; ++i) sum += values[i];
   return sum / static_cast<double>(kept);
@@ -96,7 +105,8 @@ class Search {
   double size_mm() const { return size_mm_; }
   double cap_mm() const { return cap_mm_; }
 
-  /// Trimmed rms, both ways: contour samples to the scan's edge points, scan points in the band to the surface.
+  /// Trimmed rms, both ways: contour samples to the scan's edge points, scan points in the band to the
+  /// surface.
   double score(const ScanModel& light, const NearestPoints& edges, const RigidMotion& scan_from_cad) const {
     const double cap2 = cap_mm_ * cap_mm_;
     std::vector<double> edge2, surface2;
@@ -109,7 +119,8 @@ class Search {
       const Eigen::Vector3d x = cad_from_scan * light.points_mm[i];
       if (pair_edge(cad_, x, options_.band_mm).contour < 0) continue;
       const SurfacePoint foot = cad_.surface.closest(x, cap_mm_);
-      const bool agrees = foot.triangle >= 0 && foot.normal.dot(cad_from_scan.linear() * light.normals[i]) > 0.5;
+      const bool agrees =
+          foot.triangle >= 0 && foot.normal.dot(cad_from_scan.linear() * light.normals[i]) > 0.5;
       surface2.push_back(agrees ? std::min(cap2, foot.distance_mm * foot.distance_mm) : cap2);
     }
     if (surface2.size() < 10) return cap_mm_;
@@ -117,8 +128,8 @@ class Search {
                      stray_loops2(light, cad_from_scan));
   }
 
-  /// Mean squared distance of the scan's loops from the CAD's contours, followed or not, without the worst loop (the
-  /// border of what was scanned): a second hole in the wrong place gives a wrong pose away.
+  /// Mean squared distance of the scan's loops from the CAD's contours, followed or not, without the worst
+  /// loop (the border of what was scanned): a second hole in the wrong place gives a wrong pose away.
   double stray_loops2(const ScanModel& light, const RigidMotion& cad_from_scan) const {
     if (cad_.others.empty()) return 0.0;
     std::vector<double> loop2;
@@ -146,13 +157,14 @@ class Search {
   /// The same scan with only the edge points of loops that run along the contours at a start pose.
   ScanModel along_contours(const ScanModel& light, const RigidMotion& start) const {
     std::vector<Eigen::Vector3d> edges;
-    const std::vector<LoopAssignment> assigned = assign_loops(cad_, light.loops, start, 2.0 * options_.band_mm);
+    const std::vector<LoopAssignment> assigned =
+        assign_loops(cad_, light.loops, start, 2.0 * options_.band_mm);
     for (std::size_t l = 0; l < light.loops.size(); ++l)
       if (assigned[l].contour >= 0)
         edges.insert(edges.end(), light.loops[l].points_mm.begin(), light.loops[l].points_mm.end());
     if (edges.empty()) edges = light.edge_mm;
-    return {light.points_mm, light.normals, NearestPoints({}), {}, every(edges, kEdgeSample), {}, light.spacing_mm,
-            light.noise_sigma_mm, light.side};
+    return {light.points_mm,  light.normals,        NearestPoints({}), {}, every(edges, kEdgeSample), {},
+            light.spacing_mm, light.noise_sigma_mm, light.side};
   }
 
   Candidate refine(const ScanModel& light, const NearestPoints& edges, const RigidMotion& start) const {
@@ -173,7 +185,8 @@ class Search {
   }
 
   /// The best distinct poses of one hypothesis, best first.
-  std::vector<Candidate> candidates(const ScanModel& scan, bool flip, bool mirror, std::size_t refined) const {
+  std::vector<Candidate> candidates(const ScanModel& scan, bool flip, bool mirror,
+                                    std::size_t refined) const {
     const ScanModel light = hypothesis(scan, flip, mirror);
     const NearestPoints edges(light.edge_mm);
     std::vector<std::pair<double, RigidMotion>> starts;
@@ -190,8 +203,8 @@ class Search {
     return found;
   }
 
-  /// True if the two poses put the contours in the same place, point by point or, where a motion along the contour is
-  /// free (a circle), as curves.
+  /// True if the two poses put the contours in the same place, point by point or, where a motion along the
+  /// contour is free (a circle), as curves.
   bool same_place(const Candidate& a, const Candidate& b) const {
     const RigidMotion g = a.scan_from_cad.inverse() * b.scan_from_cad;
     double moved = 0.0, off_curve = 0.0;
@@ -220,8 +233,8 @@ double extent_mm(const std::vector<Eigen::Vector3d>& points_mm) {
   return box.isEmpty() ? 0.0 : box.diagonal().norm();
 }
 
-/// The unit in which a loop would fit, when none fits as stated and the scan's extent is not that of such a part
-/// either: a scan of many small loops has one of any length.
+/// The unit in which a loop would fit, when none fits as stated and the scan's extent is not that of such a
+/// part either: a scan of many small loops has one of any length.
 double unit_that_fits(const CadModel& cad, const ScanModel& scan) {
   const double scan_mm = extent_mm(scan.points_mm);
   double part_mm = 0.0;  // of the largest: a whole plate in inches is as large as a small hole in millimetres
@@ -287,9 +300,11 @@ double beyond_spacing(double score_mm, const ScanModel& scan) {
 std::string ambiguity(const Candidate& best, const Candidate& other, double ratio) {
   if (best.flip != other.flip)
     return "both sides of the part fit alike (runner-up " + percent(ratio) +
-           " of the best): nothing says which side the scanner saw; give normals in the file, scan.seen_from or "
+           " of the best): nothing says which side the scanner saw; give normals in the file, scan.seen_from "
+           "or "
            "scan.initial";
-  return "two poses fit alike (runner-up " + percent(ratio) + " of the best); give scan.initial in the recipe";
+  return "two poses fit alike (runner-up " + percent(ratio) +
+         " of the best); give scan.initial in the recipe";
 }
 
 }  // namespace
@@ -356,10 +371,12 @@ CoarseAlignment coarse_align(const CadModel& cad, const ScanModel& scan, const C
     if (&other == &best || other.score_mm > 1e299) continue;
     if (other.flip == best.flip && search.same_place(best, other)) continue;
     result.runner_up_ratio = other.score_mm / best.score_mm;
-    if (result.runner_up_ratio < options.ambiguity_ratio) result.reason = ambiguity(best, other, result.runner_up_ratio);
+    if (result.runner_up_ratio < options.ambiguity_ratio)
+      result.reason = ambiguity(best, other, result.runner_up_ratio);
     break;
   }
-  if (!result.usable() && !side_open && result.mirror_ratio > 0.0 && result.mirror_ratio < kMirrorOfAmbiguousRatio)
+  if (!result.usable() && !side_open && result.mirror_ratio > 0.0 &&
+      result.mirror_ratio < kMirrorOfAmbiguousRatio)
     return call_mirrored();
   if (result.usable() && best.score_mm > 0.8 * search.cap_mm())
     result.reason = "no pose fits: the best start leaves " + millimetres(best.score_mm) + " mm";

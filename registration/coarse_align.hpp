@@ -12,9 +12,9 @@ namespace arris {
 /// Options of coarse_align().
 struct CoarseAlignOptions {
   std::optional<RigidMotion> initial_scan_from_cad;  ///< given by the recipe: no search, only checked
-  double within_rad = 0.52;            ///< an initial pose that the data turn by more is refused
-  double band_mm = 60.0;               ///< surface that takes part, around the contours
-  double ambiguity_ratio = 1.15;       ///< runner-up's score over the best's below this: refused
+  double within_rad = 0.52;       ///< an initial pose that the data turn by more is refused
+  double band_mm = 60.0;          ///< surface that takes part, around the contours
+  double ambiguity_ratio = 1.15;  ///< runner-up's score over the best's below this: refused
   int threads = 0;
 };
 
@@ -26,23 +26,24 @@ struct CoarseAlignment {
   bool flipped_normals = false;  ///< the side was unknown and the shape decided for the other sign
   std::string start;             ///< "matching loops", "initial pose"
   std::string reason;            ///< refusal in plain words; empty when usable
-  double mirror_ratio = 0.0;     ///< score of the scan's mirror image over score_mm; near 1: a mirrored export would
-                                 ///< not be noticed. 0: not tried
-  bool mirrored = false;         ///< the scan's mirror image fits, the scan does not: an input error for the caller
-  bool no_points = false;        ///< an initial pose with no scan point near the part: an input error for the caller
-  double unit_ratio = 1.0;       ///< not 1: the loops fit when the scan is scaled by this (25.4, 1000, ..)
+  double mirror_ratio = 0.0;  ///< score of the scan's mirror image over score_mm; near 1: a mirrored export
+                              ///< would not be noticed. 0: not tried
+  bool mirrored = false;  ///< the scan's mirror image fits, the scan does not: an input error for the caller
+  bool no_points =
+      false;  ///< an initial pose with no scan point near the part: an input error for the caller
+  double unit_ratio = 1.0;  ///< not 1: the loops fit when the scan is scaled by this (25.4, 1000, ..)
   [[nodiscard]] bool usable() const { return reason.empty(); }
 };
 
-/// Start pose from nothing but the contours: every scan loop laid on every CAD loop, the best few refined by a short
-/// rigid ICP and scored; the mirror image of the scan is scored as well, and the other side when nothing says which
-/// side the scanner saw.  Refuses: no loop to match, two sides or two poses that fit alike (naming what would decide).
-/// Cost: some 10 short ICPs on 250 points.
+/// Start pose from nothing but the contours: every scan loop laid on every CAD loop, the best few refined by
+/// a short rigid ICP and scored; the mirror image of the scan is scored as well, and the other side when
+/// nothing says which side the scanner saw.  Refuses: no loop to match, two sides or two poses that fit alike
+/// (naming what would decide). Cost: some 10 short ICPs on 250 points.
 [[nodiscard]] CoarseAlignment coarse_align(const CadModel& cad, const ScanModel& scan,
                                            const CoarseAlignOptions& options);
 
-/// Motions that the data leave free, in words ("turn about the axis (0.00 0.00 1.00) through (..)"): eigenvectors of
-/// the information matrix, rotation scaled by the contour's size, below 1e-4 of the largest.
+/// Motions that the data leave free, in words ("turn about the axis (0.00 0.00 1.00) through (..)"):
+/// eigenvectors of the information matrix, rotation scaled by the contour's size, below 1e-4 of the largest.
 [[nodiscard]] std::vector<std::string> free_directions(const Eigen::Matrix<double, 6, 6>& information,
                                                        const Eigen::Vector3d& pivot_mm, double size_mm);
 

@@ -11,14 +11,17 @@ namespace arris {
 /// Where one nominal point of the part lies now, as scanned and clamped.
 struct MappedPoint {
   Eigen::Vector3d p_scan_mm = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d rotation_scan_from_cad = Eigen::Matrix3d::Identity();  ///< local, orthonormal: carries axes, offsets
-  Eigen::Vector3d sd_mm = Eigen::Vector3d::Zero();  ///< normal to the surface, across the contour, along it; 0: unknown
+  Eigen::Matrix3d rotation_scan_from_cad =
+      Eigen::Matrix3d::Identity();  ///< local, orthonormal: carries axes, offsets
+  Eigen::Vector3d sd_mm =
+      Eigen::Vector3d::Zero();  ///< normal to the surface, across the contour, along it; 0: unknown
   double sd_axis_rad = 0.0;
-  bool from_data = false;   ///< false: the prior (neighbours, rigid motion) decided, no scan point near
-  bool in_domain = false;   ///< false: the field says nothing here; do not use the point
+  bool from_data = false;  ///< false: the prior (neighbours, rigid motion) decided, no scan point near
+  bool in_domain = false;  ///< false: the field says nothing here; do not use the point
 };
 
-/// Map of material points: nominal CAD point -> where it is in the scan (FORWARD). Implemented by each method.
+/// Map of material points: nominal CAD point -> where it is in the scan (FORWARD). Implemented by each
+/// method.
 class DeformationField {
  public:
   virtual ~DeformationField() = default;

@@ -7,7 +7,8 @@
 namespace arris {
 
 std::vector<float> signed_deviation_mm(const SurfaceQuery& cad, const RigidMotion& scan_from_cad,
-                                       std::span<const Eigen::Vector3f> points_mm, double reach_mm, int threads) {
+                                       std::span<const Eigen::Vector3f> points_mm, double reach_mm,
+                                       int threads) {
   const RigidMotion cad_from_scan = scan_from_cad.inverse();
   std::vector<float> deviation(points_mm.size(), std::numeric_limits<float>::quiet_NaN());
   parallel_for(points_mm.size(), 4096, threads, [&](std::size_t begin, std::size_t end) {

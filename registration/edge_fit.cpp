@@ -9,12 +9,12 @@
 namespace arris {
 namespace {
 
-constexpr double kBalance = 0.541;      // log(1 + exp(0.541)) = 1: see fit_edge
+constexpr double kBalance = 0.541;  // log(1 + exp(0.541)) = 1: see fit_edge
 constexpr double kStartTauMm = 2.0;
 constexpr double kTauShrink = 0.6;
 constexpr double kTauFloorMm = 0.03;
-constexpr double kStrayShare = 0.02;    // of the density: points beyond the edge that are no edge at all
-constexpr double kGateSigmas = 4.0;     // height residual of a point that takes part in the edge
+constexpr double kStrayShare = 0.02;  // of the density: points beyond the edge that are no edge at all
+constexpr double kGateSigmas = 4.0;   // height residual of a point that takes part in the edge
 constexpr double kPointsPerBin = 8.0;
 constexpr int kRounds = 30;
 constexpr double kLeastExpectedRatio = 0.5;  // of the scan's median density, beside the contour
@@ -25,8 +25,8 @@ constexpr std::size_t kChunk = 512;
 /// A scan point in the contour's own coordinates, CAD frame.
 struct StripPoint {
   double arc_mm = 0.0;
-  double across_mm = 0.0;  // into the material
-  double height_mm = 0.0;  // signed distance to the CAD surface
+  double across_mm = 0.0;     // into the material
+  double height_mm = 0.0;     // signed distance to the CAD surface
   double curve_weight = 1.0;  // undoes the fan of a bent contour: area of the strip per length of the contour
   SplineRow row;
   bool inlier = true;
@@ -47,14 +47,19 @@ double variance_at(const SplineRow& row, const Eigen::MatrixXd& covariance) {
   return std::max(0.0, variance);
 }
 
-double unseen_bend_mm(double to_seen_mm) { return 0.5 * kGapBendPerMm * to_seen_mm * to_seen_mm; }
+double unseen_bend_mm(double to_seen_mm) {
+  return 0.5 * kGapBendPerMm * to_seen_mm * to_seen_mm;
+}
 
-double sigmoid(double x) { return x >= 0.0 ? 1.0 / (1.0 + std::exp(-x)) : std::exp(x) / (1.0 + std::exp(x)); }
+double sigmoid(double x) {
+  return x >= 0.0 ? 1.0 / (1.0 + std::exp(-x)) : std::exp(x) / (1.0 + std::exp(x));
+}
 
 /// The nominal contour carried to the scan, with its arc lengths kept.
 class CarriedCurve {
  public:
-  CarriedCurve(const Curve& nominal, const ContourMotion& motion) : nominal_(nominal), curve_(carry(nominal, motion)) {}
+  CarriedCurve(const Curve& nominal, const ContourMotion& motion)
+      : nominal_(nominal), curve_(carry(nominal, motion)) {}
 
   /// Nominal arc length of the foot of a scan point.
   double arc_of(const Eigen::Vector3d& p_scan_mm, double& distance_mm) const {
@@ -79,7 +84,8 @@ class CarriedCurve {
   Curve curve_;
 };
 
-/// Curvature of the contour in the surface at s: positive where the material fans out (a hole's inside corner).
+/// Curvature of the contour in the surface at s: positive where the material fans out (a hole's inside
+/// corner).
 double fan_per_mm(const Curve& curve, double arc_mm, double window_mm) {
   const Eigen::Vector3d before = curve.tangent(curve.wrap_mm(arc_mm - window_mm));
   const Eigen::Vector3d after = curve.tangent(curve.wrap_mm(arc_mm + window_mm));
@@ -91,8 +97,24 @@ class EdgeFitter {
  public:
   EdgeFitter(const CadModel& cad, std::size_t contour, const ScanModel& scan, const ContourMotion& motion,
              const EdgeFitOptions& options)
-      : cad_(cad), contour_(contour), curve_(cad.contours[contour]), scan_(scan), motion_(motion), options_(options),
-        fit_{ArcSpline(curve_.length_mm(), curve_.closed(), options.knot_mm), {}, {}, {}, {}, {}, {}, 0.0, {}, 0.0, 0.0, 0} {
+      : cad_(cad),
+        contour_(contour),
+        curve_(cad.contours[contour]),
+        scan_(scan),
+        motion_(motion),
+        options_(options),
+        fit_{ArcSpline(curve_.length_mm(), curve_.closed(), options.knot_mm),
+             {},
+             {},
+             {},
+             {},
+             {},
+             {},
+             0.0,
+             {},
+             0.0,
+             0.0,
+             0} {
     strip_mm_ = std::clamp(4.0 * scan.spacing_mm, 3.0, options.strip_mm);
     normal_strip_mm_ = std::clamp(6.0 * scan.spacing_mm, strip_mm_, options.normal_strip_mm);
   }
@@ -186,7 +208,8 @@ class EdgeFitter {
     return p.row.dot(fit_.height) + p.row.dot(fit_.tilt) * std::max(0.0, p.across_mm);
   }
 
-  void add_height_row(const StripPoint& p, double weight, Eigen::MatrixXd& information, Eigen::VectorXd& right) const {
+  void add_height_row(const StripPoint& p, double weight, Eigen::MatrixXd& information,
+                      Eigen::VectorXd& right) const {
     const int n = fit_.spline.size();
     const double u = std::max(0.0, p.across_mm);
     std::array<int, 8> column{};
@@ -247,7 +270,8 @@ class EdgeFitter {
     for (const StripPoint& p : points_)
       if (p.inlier && fit_.seen_at(p.arc_mm)) active.push_back(&p);
     Eigen::MatrixXd curvature;
-    for (double tau = std::max(kStartTauMm, 0.5 * scan_.spacing_mm);; tau = std::max(tau_end, tau * kTauShrink)) {
+    for (double tau = std::max(kStartTauMm, 0.5 * scan_.spacing_mm);;
+         tau = std::max(tau_end, tau * kTauShrink)) {
       const bool last = tau <= tau_end * 1.0001;
       for (int round = 0; round < (last ? kRounds : 4); ++round)
         if (newton_step(active, prior, tau, curvature) < 1e-4) break;
@@ -266,7 +290,8 @@ class EdgeFitter {
       const double x = g / tau - kBalance;
       const double inside = sigmoid(x);
       const double trusted = inside / (inside + kStrayShare);
-      const double outward = p->curve_weight * trusted * (1.0 - inside) / tau;  // the point pushes the edge outward
+      const double outward =
+          p->curve_weight * trusted * (1.0 - inside) / tau;  // the point pushes the edge outward
       const double inward = g > 0.0 ? p->curve_weight / strip_mm_ : 0.0;
       const double bend = p->curve_weight * trusted * bounded_curvature(x) / (tau * tau);
       for (std::size_t a = 0; a < 4; ++a) {
@@ -280,7 +305,8 @@ class EdgeFitter {
     return step.cwiseAbs().maxCoeff();
   }
 
-  /// Curvature of -log sigmoid, with the quadratic bound tanh(x/2) / (2x) where Newton would overshoot (x < 0).
+  /// Curvature of -log sigmoid, with the quadratic bound tanh(x/2) / (2x) where Newton would overshoot (x <
+  /// 0).
   static double bounded_curvature(double x) {
     if (x < -1e-6) return std::tanh(0.5 * x) / (2.0 * x);
     const double s = sigmoid(x);
@@ -315,13 +341,16 @@ double EdgeFit::to_seen_mm(double arc_mm, bool closed) const {
     const double begin_mm = bin_mm * static_cast<double>(b);
     for (const double turn_mm : {0.0, length_mm, -length_mm}) {
       if (turn_mm != 0.0 && !closed) continue;
-      nearest_mm = std::min(nearest_mm, std::max(begin_mm + turn_mm - arc_mm, arc_mm - begin_mm - turn_mm - bin_mm));
+      nearest_mm =
+          std::min(nearest_mm, std::max(begin_mm + turn_mm - arc_mm, arc_mm - begin_mm - turn_mm - bin_mm));
     }
   }
   return std::max(0.0, nearest_mm);
 }
 
-double EdgeFit::edge_limit_mm() const { return 1.0 / (kEdgeLimitLengthMm * std::max(density_per_mm2, 1e-9)); }
+double EdgeFit::edge_limit_mm() const {
+  return 1.0 / (kEdgeLimitLengthMm * std::max(density_per_mm2, 1e-9));
+}
 
 double EdgeFit::sd_across_mm(double arc_mm, bool closed) const {
   const double gap_mm = unseen_bend_mm(to_seen_mm(arc_mm, closed));

@@ -46,7 +46,8 @@ std::vector<LoopAssignment> assign_loops(const CadModel& cad, const std::vector<
       const std::size_t contour =
           static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
       const double size_mm = cad.contours[contour].length_mm() / 6.28;
-      if (assignment.median_mm < std::min(0.1 * size_mm, 0.5 * band_mm)) assignment.contour = static_cast<int>(contour);
+      if (assignment.median_mm < std::min(0.1 * size_mm, 0.5 * band_mm))
+        assignment.contour = static_cast<int>(contour);
     }
     assignments.push_back(assignment);
   }

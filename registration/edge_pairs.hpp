@@ -23,12 +23,12 @@ struct EdgePair {
 
 /// Points of one scan loop, and whether the loop runs along an accepted contour.
 struct LoopAssignment {
-  int contour = -1;          ///< accepted contour that it follows; -1: dropped
-  double median_mm = 0.0;    ///< median distance to the nearest contour at the pose given
+  int contour = -1;        ///< accepted contour that it follows; -1: dropped
+  double median_mm = 0.0;  ///< median distance to the nearest contour at the pose given
 };
 
-/// Which scan loops run along an accepted CAD contour at a pose: median distance within a tenth of the contour's size
-/// and half the band. The border of the scanned band, clamps and other openings do not.
+/// Which scan loops run along an accepted CAD contour at a pose: median distance within a tenth of the
+/// contour's size and half the band. The border of the scanned band, clamps and other openings do not.
 [[nodiscard]] std::vector<LoopAssignment> assign_loops(const CadModel& cad, const std::vector<Contour>& loops,
                                                        const RigidMotion& scan_from_cad, double band_mm);
 

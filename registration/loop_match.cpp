@@ -10,11 +10,13 @@ namespace {
 
 constexpr std::size_t kArcs = 64;
 constexpr std::size_t kKeptShifts = 4;
-constexpr double kNearlyClosedRatio = 0.15;   // ends this near, in lengths: a loop with a gap
-constexpr double kShortestChainRatio = 0.35;  // of the CAD loop; a shorter piece does not tell where it belongs
+constexpr double kNearlyClosedRatio = 0.15;  // ends this near, in lengths: a loop with a gap
+constexpr double kShortestChainRatio =
+    0.35;  // of the CAD loop; a shorter piece does not tell where it belongs
 constexpr double kRaggedRatios[] = {1.0, 0.9};  // a ragged chain is longer than the edge it follows
 
-/// Means over n equal arcs of a stretch of the curve, which smooths a ragged scan edge to the scale of an arc.
+/// Means over n equal arcs of a stretch of the curve, which smooths a ragged scan edge to the scale of an
+/// arc.
 std::vector<Eigen::Vector3d> arc_means(const Curve& curve, double start_mm, double stretch_mm) {
   constexpr int kSamplesPerArc = 4;
   std::vector<Eigen::Vector3d> points(kArcs, Eigen::Vector3d::Zero());
@@ -30,17 +32,20 @@ std::vector<Eigen::Vector3d> arc_means(const Curve& curve, double start_mm, doub
 /// A loop that only a gap keeps open is taken as closed.
 Contour without_small_gap(Contour loop) {
   if (!loop.closed && loop.points_mm.size() >= 8)
-    loop.closed = (loop.points_mm.front() - loop.points_mm.back()).norm() < kNearlyClosedRatio * length_mm(loop);
+    loop.closed =
+        (loop.points_mm.front() - loop.points_mm.back()).norm() < kNearlyClosedRatio * length_mm(loop);
   return loop;
 }
 
 /// Local minima of the fit over all start shifts, best first.
-void add_best_shifts(const std::vector<RigidFit>& fits, int cad_loop, int scan_loop, std::vector<LoopMatch>& matches) {
+void add_best_shifts(const std::vector<RigidFit>& fits, int cad_loop, int scan_loop,
+                     std::vector<LoopMatch>& matches) {
   std::vector<LoopMatch> local;
   const std::size_t n = fits.size();
   for (std::size_t k = 0; k < n; ++k) {
     const RigidFit& fit = fits[k];
-    if (!fit.usable() || fit.rms_mm > fits[(k + n - 1) % n].rms_mm || fit.rms_mm > fits[(k + 1) % n].rms_mm) continue;
+    if (!fit.usable() || fit.rms_mm > fits[(k + n - 1) % n].rms_mm || fit.rms_mm > fits[(k + 1) % n].rms_mm)
+      continue;
     local.push_back({fit.to_from, fit.rms_mm, cad_loop, scan_loop});
   }
   std::stable_sort(local.begin(), local.end(), [](auto& a, auto& b) { return a.rms_mm < b.rms_mm; });
@@ -71,8 +76,8 @@ std::vector<RigidFit> fits_of_chain(const Curve& cad, const Curve& scan, double 
 
 }  // namespace
 
-std::vector<LoopMatch> match_loops(const std::vector<Contour>& cad_loops, const std::vector<Contour>& scan_loops,
-                                   double length_ratio) {
+std::vector<LoopMatch> match_loops(const std::vector<Contour>& cad_loops,
+                                   const std::vector<Contour>& scan_loops, double length_ratio) {
   std::vector<LoopMatch> matches;
   for (std::size_t c = 0; c < cad_loops.size(); ++c) {
     if (!cad_loops[c].closed || cad_loops[c].points_mm.size() < 8) continue;

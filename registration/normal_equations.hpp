@@ -8,7 +8,8 @@
 namespace arris {
 
 /// Gauss-Newton normal equations of one rigid motion, rotation (rad) before translation (mm), for a left
-/// perturbation x -> exp(omega) (x - pivot) + pivot + v about a pivot near the data, which keeps the 6x6 conditioned.
+/// perturbation x -> exp(omega) (x - pivot) + pivot + v about a pivot near the data, which keeps the 6x6
+/// conditioned.
 struct NormalEquations {
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
@@ -32,7 +33,8 @@ struct NormalEquations {
     weight += other.weight;
     return *this;
   }
-  /// The step that minimises cost + prior: prior_ is added to the diagonal (1/rad^2 three times, 1/mm^2 three times).
+  /// The step that minimises cost + prior: prior_ is added to the diagonal (1/rad^2 three times, 1/mm^2 three
+  /// times).
   [[nodiscard]] Eigen::Matrix<double, 6, 1> solve(const Eigen::Matrix<double, 6, 1>& prior) const {
     Eigen::Matrix<double, 6, 6> damped = information;
     damped.diagonal() += prior;
@@ -41,7 +43,8 @@ struct NormalEquations {
 };
 
 /// The rigid motion of a step about a pivot.
-[[nodiscard]] inline RigidMotion motion_of(const Eigen::Matrix<double, 6, 1>& step, const Eigen::Vector3d& pivot_mm) {
+[[nodiscard]] inline RigidMotion motion_of(const Eigen::Matrix<double, 6, 1>& step,
+                                           const Eigen::Vector3d& pivot_mm) {
   const Eigen::Vector3d omega = step.head<3>();
   const double angle_rad = omega.norm();
   RigidMotion motion = RigidMotion::Identity();
@@ -50,8 +53,8 @@ struct NormalEquations {
   return motion;
 }
 
-/// Geman-McClure weight at residual r for scale c: (c^2 / (c^2 + r^2))^2, the derivative of c^2 r^2 / (c^2 + r^2).
-/// Annealing c from large to small is graduated non-convexity (Yang et al., RA-L 5(2), 2020).
+/// Geman-McClure weight at residual r for scale c: (c^2 / (c^2 + r^2))^2, the derivative of c^2 r^2 / (c^2 +
+/// r^2). Annealing c from large to small is graduated non-convexity (Yang et al., RA-L 5(2), 2020).
 [[nodiscard]] inline double geman_mcclure_weight(double residual2, double scale) {
   const double c2 = scale * scale;
   const double ratio = c2 / (c2 + residual2);

@@ -13,7 +13,8 @@ constexpr double kSharpenedSigmaRatio = 0.1;  // scatter of the edge by support,
 constexpr int kSharpeningPasses = 2;
 constexpr double kRigidStartLooseness = 8.0;
 constexpr double kSampleMm = 2.0;
-constexpr double kSeamMm = 2.5, kSeamEdgeLimits = 3.0;      // how far segments may disagree: bending, and the edge limit
+constexpr double kSeamMm = 2.5,
+                 kSeamEdgeLimits = 3.0;  // how far segments may disagree: bending, and the edge limit
 constexpr double kResidualMm = 0.15, kResidualSigmas = 5.0;  // of the height beside the edge
 
 /// Turns an undecided scan to the side that the start pose chose.
@@ -37,7 +38,8 @@ void drop_other_loops(const CadModel& cad, ScanModel& scan, const RigidMotion& s
     if (l < scan.loop_rejected.size() && scan.loop_rejected[l]) assigned[l].contour = -1;
     if (assigned[l].contour < 0) continue;
     scan.edge_mm.insert(scan.edge_mm.end(), scan.loops[l].points_mm.begin(), scan.loops[l].points_mm.end());
-    scan.edge_normals.insert(scan.edge_normals.end(), scan.loops[l].normals.begin(), scan.loops[l].normals.end());
+    scan.edge_normals.insert(scan.edge_normals.end(), scan.loops[l].normals.begin(),
+                             scan.loops[l].normals.end());
   }
 }
 
@@ -47,8 +49,8 @@ void along(const Curve& curve, const Body& body) {
   for (int i = 0; i < count; ++i) body(curve.length_mm() * i / count);
 }
 
-std::vector<ContourResult> with_edges(const CadModel& cad, const ScanModel& scan, std::vector<ContourMotion> motions,
-                                      const EdgeFitOptions& options) {
+std::vector<ContourResult> with_edges(const CadModel& cad, const ScanModel& scan,
+                                      std::vector<ContourMotion> motions, const EdgeFitOptions& options) {
   std::vector<ContourResult> results;
   for (std::size_t c = 0; c < motions.size(); ++c) {
     EdgeFit edge = fit_edge(cad, c, scan, motions[c], options);
@@ -96,11 +98,13 @@ double edge_rms(const CadModel& cad, const std::vector<ContourResult>& contours,
   for (std::size_t c = 0; c < contours.size(); ++c) {
     Contour carried = cad.contours[c].contour();
     for (std::size_t i = 0; i < carried.points_mm.size(); ++i)
-      carried.points_mm[i] = carry(c, cad.contours[c].arc_of_point_mm(static_cast<int>(i)), carried.points_mm[i]);
+      carried.points_mm[i] =
+          carry(c, cad.contours[c].arc_of_point_mm(static_cast<int>(i)), carried.points_mm[i]);
     const Curve image(carried);
     along(cad.contours[c], [&](double s_mm) {
       if (!contours[c].edge.seen_at(s_mm)) return;
-      const double d = image.nearest(edge_point_mm(cad, c, contours[c].motion, contours[c].edge, s_mm)).distance_mm;
+      const double d =
+          image.nearest(edge_point_mm(cad, c, contours[c].motion, contours[c].edge, s_mm)).distance_mm;
       sum2 += d * d;
       count += 1.0;
     });
@@ -113,8 +117,9 @@ double stretch(const CadModel& cad, const std::vector<ContourResult>& contours) 
   for (std::size_t c = 0; c < contours.size(); ++c) {
     Contour image;
     image.closed = cad.contours[c].closed();
-    along(cad.contours[c],
-          [&](double s_mm) { image.points_mm.push_back(contours[c].motion.at(s_mm) * cad.contours[c].point_mm(s_mm)); });
+    along(cad.contours[c], [&](double s_mm) {
+      image.points_mm.push_back(contours[c].motion.at(s_mm) * cad.contours[c].point_mm(s_mm));
+    });
     Contour flat = image;
     flat.points_mm.clear();
     along(cad.contours[c], [&](double s_mm) { flat.points_mm.push_back(cad.contours[c].point_mm(s_mm)); });
@@ -159,9 +164,10 @@ void judge_seams(const CadModel& cad, Registration& result) {
       apart -= apart.dot(tangent) * tangent;
       if (apart.norm() < limit_mm) continue;
       char text[200];
-      std::snprintf(text, sizeof text,
-                    "contour %d: the segments on both sides of s = %.0f mm disagree by %.1f mm (at most %.1f)",
-                    cad.contours[c].contour().id, s_mm, apart.norm(), limit_mm);
+      std::snprintf(
+          text, sizeof text,
+          "contour %d: the segments on both sides of s = %.0f mm disagree by %.1f mm (at most %.1f)",
+          cad.contours[c].contour().id, s_mm, apart.norm(), limit_mm);
       result.refusals.emplace_back(text);
     }
   }
@@ -173,9 +179,10 @@ void judge_residuals(const CadModel& cad, const ScanModel& scan, Registration& r
     const double limit_mm = kResidualMm + kResidualSigmas * scan.noise_sigma_mm;
     if (result.contours[c].edge.residual_sigma_mm < limit_mm) continue;
     char text[200];
-    std::snprintf(text, sizeof text,
-                  "contour %d: the surface beside the edge is not explained: residual %.2f mm, scanner noise %.2f mm",
-                  cad.contours[c].contour().id, result.contours[c].edge.residual_sigma_mm, scan.noise_sigma_mm);
+    std::snprintf(
+        text, sizeof text,
+        "contour %d: the surface beside the edge is not explained: residual %.2f mm, scanner noise %.2f mm",
+        cad.contours[c].contour().id, result.contours[c].edge.residual_sigma_mm, scan.noise_sigma_mm);
     result.refusals.emplace_back(text);
   }
 }
@@ -192,14 +199,15 @@ void judge_coverage(const CadModel& cad, const RegistrationOptions& options, Reg
     }
     const Unseen gap = longest_unseen(edge, cad.contours[c].closed());
     if (gap.length_mm > options.max_unseen_mm) {
-      std::snprintf(text, sizeof text, "contour %d not seen from s = %.0f to %.0f mm (%.0f mm, at most %.0f)", id,
-                    gap.from_mm, gap.from_mm + gap.length_mm, gap.length_mm, options.max_unseen_mm);
+      std::snprintf(text, sizeof text, "contour %d not seen from s = %.0f to %.0f mm (%.0f mm, at most %.0f)",
+                    id, gap.from_mm, gap.from_mm + gap.length_mm, gap.length_mm, options.max_unseen_mm);
       result.refusals.emplace_back(text);
     }
   }
 }
 
-void deform(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options, Registration& result) {
+void deform(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options,
+            Registration& result) {
   const RigidMotion& rigid = result.rigid.scan_from_cad;
   std::vector<ContourMotion> motions;
   for (const Curve& curve : cad.contours) motions.push_back(rigid_motion(curve, rigid));
@@ -215,7 +223,8 @@ void deform(const CadModel& cad, const ScanModel& scan, const RegistrationOption
     earlier = moved;
     result.contours = with_edges(cad, scan, std::move(moved), options.edge);
   }
-  result.field = std::make_shared<SubdivisionField>(cad, result.contours, options.band_mm, options.follow_edge);
+  result.field =
+      std::make_shared<SubdivisionField>(cad, result.contours, options.band_mm, options.follow_edge);
 }
 
 }  // namespace
@@ -243,10 +252,12 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   deform(cad, scan, options, result);
   const RigidMotion& pose = result.rigid.scan_from_cad;
   result.stage_residual_mm.emplace_back(
-      "rigid", edge_rms(cad, result.contours, [&](std::size_t, double, const Eigen::Vector3d& p) { return pose * p; }));
+      "rigid", edge_rms(cad, result.contours,
+                        [&](std::size_t, double, const Eigen::Vector3d& p) { return pose * p; }));
   if (options.method == RegistrationMethod::kSubdivision)
     result.stage_residual_mm.emplace_back(
-        "subdivision", edge_rms(cad, result.contours, [&](std::size_t c, double s_mm, const Eigen::Vector3d& p) {
+        "subdivision",
+        edge_rms(cad, result.contours, [&](std::size_t c, double s_mm, const Eigen::Vector3d& p) {
           return result.contours[c].motion.at(s_mm) * p;
         }));
   result.mean_strain_ratio = stretch(cad, result.contours);
@@ -260,7 +271,8 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   return result;
 }
 
-double rigid_gap_mm(const CadModel& cad, std::size_t contour, const Registration& registration, double arc_mm) {
+double rigid_gap_mm(const CadModel& cad, std::size_t contour, const Registration& registration,
+                    double arc_mm) {
   const ContourResult& found = registration.contours[contour];
   const Eigen::Vector3d edge_mm = edge_point_mm(cad, contour, found.motion, found.edge, arc_mm);
   return cad.contours[contour].nearest(registration.rigid.scan_from_cad.inverse() * edge_mm).distance_mm;

@@ -24,33 +24,36 @@ struct RegistrationOptions {
   RigidIcpOptions rigid;
   SubdivisionIcpOptions subdivision;
   EdgeFitOptions edge;
-  bool follow_edge = true;          ///< role `edge`
-  double band_mm = 60.0;            ///< where the field speaks
-  double min_seen_ratio = 0.6;      ///< of each contour's length; below it: refused
-  double max_unseen_mm = 100.0;     ///< longest stretch of contour without data; above it: refused
+  bool follow_edge = true;       ///< role `edge`
+  double band_mm = 60.0;         ///< where the field speaks
+  double min_seen_ratio = 0.6;   ///< of each contour's length; below it: refused
+  double max_unseen_mm = 100.0;  ///< longest stretch of contour without data; above it: refused
   int threads = 0;
 };
 
 /// Where the part lies and how it is bent. The field is there unless `refusals` says why not to use it.
 struct Registration {
   CoarseAlignment coarse;
-  RigidIcpResult rigid;                       ///< usable() tells whether there is a pose
+  RigidIcpResult rigid;  ///< usable() tells whether there is a pose
   std::vector<std::string> free_directions;
-  std::vector<LoopAssignment> loops;          ///< one a loop of the scan: the contour it runs along, or dropped
+  std::vector<LoopAssignment> loops;  ///< one a loop of the scan: the contour it runs along, or dropped
   std::shared_ptr<const DeformationField> field;  ///< null when no pose was found
-  std::vector<ContourResult> contours;        ///< one an accepted contour; of method rigid, with one rigid segment
-  std::vector<std::string> refusals;          ///< in plain words
-  std::vector<std::pair<std::string, double>> stage_residual_mm;  ///< distance found edge - carried nominal, rms
-  double mean_strain_ratio = 0.0;             ///< lengthening of the contours, carried against nominal
+  std::vector<ContourResult> contours;  ///< one an accepted contour; of method rigid, with one rigid segment
+  std::vector<std::string> refusals;    ///< in plain words
+  std::vector<std::pair<std::string, double>>
+      stage_residual_mm;           ///< distance found edge - carried nominal, rms
+  double mean_strain_ratio = 0.0;  ///< lengthening of the contours, carried against nominal
   double density_per_mm2 = 0.0;
   [[nodiscard]] bool usable() const { return field != nullptr; }
 };
 
-/// All stages in order: start pose, rigid ICP, subdivision ICP on the scan's edge points, the edge by one-sided
-/// support, subdivision ICP again on that sharpened edge, and the edge once more.
-/// Angle-gap edge points lie half a spacing to a whole one inside the material, so the first subdivision only finds
-/// the neighbourhood. Throws nothing of its own; a scan that is mirrored or in another unit is reported in `coarse`.
-[[nodiscard]] Registration register_part(const CadModel& cad, ScanModel& scan, const RegistrationOptions& options);
+/// All stages in order: start pose, rigid ICP, subdivision ICP on the scan's edge points, the edge by
+/// one-sided support, subdivision ICP again on that sharpened edge, and the edge once more. Angle-gap edge
+/// points lie half a spacing to a whole one inside the material, so the first subdivision only finds the
+/// neighbourhood. Throws nothing of its own; a scan that is mirrored or in another unit is reported in
+/// `coarse`.
+[[nodiscard]] Registration register_part(const CadModel& cad, ScanModel& scan,
+                                         const RegistrationOptions& options);
 
 /// Distance from the found edge to the nominal contour carried rigidly, at arc length s of contour c; mm.
 [[nodiscard]] double rigid_gap_mm(const CadModel& cad, std::size_t contour, const Registration& registration,

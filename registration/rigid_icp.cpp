@@ -28,8 +28,8 @@ double median_of(std::vector<double>& values) {
 }
 
 /// Scan points that can belong to the band around the contours at the start pose, thinned to a fixed count.
-std::vector<std::size_t> band_sample(const CadModel& cad, const ScanModel& scan, const RigidMotion& cad_from_scan,
-                                     const RigidIcpOptions& options) {
+std::vector<std::size_t> band_sample(const CadModel& cad, const ScanModel& scan,
+                                     const RigidMotion& cad_from_scan, const RigidIcpOptions& options) {
   std::vector<char> in_band(scan.points_mm.size(), 0);
   const double reach_mm = options.band_mm + options.start_scale_mm;
   parallel_for(scan.points_mm.size(), 4 * kChunk, options.threads, [&](std::size_t begin, std::size_t end) {
@@ -81,7 +81,8 @@ class PointToPlane {
     sample_ = band_sample(cad, scan, cad_from_scan_, options);
     scale_mm_ = options.start_scale_mm;
     for (const Curve& curve : cad.contours)
-      for (const Eigen::Vector3d& p : curve.contour().points_mm) pivot_ += p / double(curve.contour().points_mm.size());
+      for (const Eigen::Vector3d& p : curve.contour().points_mm)
+        pivot_ += p / double(curve.contour().points_mm.size());
     pivot_ /= std::max<double>(1.0, double(cad.contours.size()));
   }
 
@@ -159,15 +160,17 @@ class PointToPlane {
   void fill(RigidIcpResult& result, const Round& round) const {
     NormalEquations both = round.surface;
     both += round.edge;
-    const auto rms = [](const NormalEquations& e) { return e.weight > 0 ? std::sqrt(e.cost / e.weight) : 0.0; };
+    const auto rms = [](const NormalEquations& e) {
+      return e.weight > 0 ? std::sqrt(e.cost / e.weight) : 0.0;
+    };
     result.rms_mm = rms(both);
     result.surface_rms_mm = rms(round.surface);
     result.edge_rms_mm = rms(round.edge) * std::sqrt(2.0);  // two rows a point
     result.information = both.information;
   }
 
-  /// Moves cad_from_scan by one damped Gauss-Newton step, but not along directions that the data leave free: there the
-  /// gradient is noise over nothing, and a circle would spin about its axis by degrees a round.
+  /// Moves cad_from_scan by one damped Gauss-Newton step, but not along directions that the data leave free:
+  /// there the gradient is noise over nothing, and a circle would spin about its axis by degrees a round.
   double step(const Round& round) {
     NormalEquations both = round.surface;
     both += round.edge;
@@ -177,7 +180,8 @@ class PointToPlane {
     scale << Eigen::Vector3d::Constant(1.0 / reach_mm), Eigen::Vector3d::Ones();
     const Eigen::Matrix<double, 6, 6> scaled = scale.asDiagonal() * both.information * scale.asDiagonal();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(scaled);
-    const Eigen::Matrix<double, 6, 1> gradient = eigen.eigenvectors().transpose() * scale.cwiseProduct(both.gradient);
+    const Eigen::Matrix<double, 6, 1> gradient =
+        eigen.eigenvectors().transpose() * scale.cwiseProduct(both.gradient);
     Eigen::Matrix<double, 6, 1> along = Eigen::Matrix<double, 6, 1>::Zero();
     const double largest = eigen.eigenvalues()[5];
     for (int i = 0; i < 6; ++i)
@@ -202,15 +206,17 @@ class PointToPlane {
 void RigidIcpOptions::check() const {
   if (max_iterations < 1 || max_iterations > 10000)
     throw Error(Fault::kRecipe, {.what = "registration.max_iterations is out of range",
-                                 .found = std::to_string(max_iterations), .needed = "1 to 10000"});
+                                 .found = std::to_string(max_iterations),
+                                 .needed = "1 to 10000"});
   if (!(stop_change_ratio > 0.0 && stop_change_ratio < 1.0))
     throw Error(Fault::kRecipe, {.what = "registration.stop_change is out of range",
-                                 .found = std::to_string(stop_change_ratio), .needed = "between 0 and 1"});
+                                 .found = std::to_string(stop_change_ratio),
+                                 .needed = "between 0 and 1"});
 }
 
 RigidIcpResult icp_point_to_point(std::span<const Eigen::Vector3d> model_mm, const NearestPoints& data,
-                                  std::span<const Eigen::Vector3d> data_mm, const RigidMotion& start_scan_from_cad,
-                                  const RigidIcpOptions& options) {
+                                  std::span<const Eigen::Vector3d> data_mm,
+                                  const RigidMotion& start_scan_from_cad, const RigidIcpOptions& options) {
   options.check();
   RigidIcpResult result;
   result.scan_from_cad = start_scan_from_cad;
@@ -224,7 +230,8 @@ RigidIcpResult icp_point_to_point(std::span<const Eigen::Vector3d> model_mm, con
   for (int k = 0; k < options.max_iterations; ++k) {
     for (std::size_t i = 0; i < model_mm.size(); ++i)
       partner[i] = data_mm[static_cast<std::size_t>(data.nearest(result.scan_from_cad * model_mm[i]).index)];
-    const RigidFit fit = fit_rigid(model_mm, partner);  // from the model itself: the motions compose by themselves
+    const RigidFit fit =
+        fit_rigid(model_mm, partner);  // from the model itself: the motions compose by themselves
     if (!fit.usable()) {
       result.reason = fit.reason;
       return result;
@@ -242,8 +249,8 @@ RigidIcpResult icp_point_to_point(std::span<const Eigen::Vector3d> model_mm, con
   return result;
 }
 
-RigidIcpResult icp_point_to_plane(const CadModel& cad, const ScanModel& scan, const RigidMotion& start_scan_from_cad,
-                                  const RigidIcpOptions& options) {
+RigidIcpResult icp_point_to_plane(const CadModel& cad, const ScanModel& scan,
+                                  const RigidMotion& start_scan_from_cad, const RigidIcpOptions& options) {
   options.check();
   return PointToPlane(cad, scan, options, start_scan_from_cad).run();
 }

@@ -14,7 +14,8 @@ namespace arris {
 /// The drawing, ready for queries: frame Cad, mm. Built once a part number.
 struct CadModel {
   SurfaceQuery surface;
-  std::vector<Curve> contours;  ///< accepted contours, each with normals; material on the left seen against them
+  std::vector<Curve>
+      contours;  ///< accepted contours, each with normals; material on the left seen against them
 
   std::vector<Curve> others = {};  ///< contours that are not followed; they tell poses apart
 
@@ -28,15 +29,17 @@ enum class SideKnown { kNo, kYes };
 /// One scan, ready for queries: frame Scan about the cloud's offset, mm, double.
 struct ScanModel {
   std::vector<Eigen::Vector3d> points_mm;
-  std::vector<Eigen::Vector3d> normals;    ///< unit, one a point; out of the material if side == kYes, else consistent
+  std::vector<Eigen::Vector3d>
+      normals;  ///< unit, one a point; out of the material if side == kYes, else consistent
   NearestPoints tree{std::span<const Eigen::Vector3d>{}};  ///< over points_mm
-  std::vector<Contour> loops;              ///< found contours, oriented like the CAD's when side == kYes
-  std::vector<Eigen::Vector3d> edge_mm;    ///< all points of all loops: where the scan stops
+  std::vector<Contour> loops;            ///< found contours, oriented like the CAD's when side == kYes
+  std::vector<Eigen::Vector3d> edge_mm;  ///< all points of all loops: where the scan stops
   std::vector<Eigen::Vector3d> edge_normals;
-  double spacing_mm = 0.0;                 ///< median point spacing
+  double spacing_mm = 0.0;  ///< median point spacing
   double noise_sigma_mm = 0.0;
   SideKnown side = SideKnown::kNo;
-  std::vector<char> loop_rejected = {};    ///< an operator's choice, one a loop: the pose may use it, the fit may not
+  std::vector<char> loop_rejected =
+      {};  ///< an operator's choice, one a loop: the pose may use it, the fit may not
 };
 
 }  // namespace arris

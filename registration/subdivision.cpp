@@ -29,7 +29,8 @@ std::vector<double> corner_cuts(const Curve& curve, double corner_radius_max_mm)
 }
 
 /// Leaves out cuts that would make a piece shorter than the shortest.
-std::vector<double> without_slivers(const std::vector<double>& cuts, double shortest_mm, double length_mm, bool closed) {
+std::vector<double> without_slivers(const std::vector<double>& cuts, double shortest_mm, double length_mm,
+                                    bool closed) {
   std::vector<double> kept;
   for (const double cut : cuts)
     if (kept.empty() || cut - kept.back() >= shortest_mm) kept.push_back(cut);
@@ -42,8 +43,10 @@ std::vector<double> without_slivers(const std::vector<double>& cuts, double shor
 void SubdivisionOptions::check() const {
   const auto need = [](bool holds, const char* what, double found, const char* needed) {
     if (!holds)
-      throw Error(Fault::kRecipe, {.what = std::string("registration.subdivision.") + what + " is out of range",
-                                   .found = std::to_string(found), .needed = needed});
+      throw Error(Fault::kRecipe,
+                  {.what = std::string("registration.subdivision.") + what + " is out of range",
+                   .found = std::to_string(found),
+                   .needed = needed});
   };
   need(corner_radius_max_mm >= 0.0, "corner_radius_max_mm", corner_radius_max_mm, "0 or more");
   need(segment_length_max_mm > 1.0, "segment_length_max_mm", segment_length_max_mm, "more than 1");
@@ -72,7 +75,8 @@ Subdivision::Subdivision(const Curve& curve, const SubdivisionOptions& options)
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     const double piece_mm = cuts[i + 1] - cuts[i];
     int parts = std::max(1, static_cast<int>(std::ceil(piece_mm / epsilon - 1e-9)));
-    if (closed_ && cuts.size() == 2) parts = std::max(parts, 3);  // a loop of fewer pieces would overlap itself
+    if (closed_ && cuts.size() == 2)
+      parts = std::max(parts, 3);  // a loop of fewer pieces would overlap itself
     for (int p = 0; p < parts; ++p)
       segments_.push_back({cuts[i] + piece_mm * p / parts, cuts[i] + piece_mm * (p + 1) / parts, 0.0, 0.0});
   }
@@ -103,7 +107,8 @@ std::vector<int> Subdivision::reaching(double arc_mm) const {
   std::vector<int> found;
   for (std::size_t z = 0; z < segments_.size(); ++z) {
     const double s = relative(segments_[z], arc_mm);
-    if (s >= segments_[z].reach_begin_mm && s <= segments_[z].reach_end_mm) found.push_back(static_cast<int>(z));
+    if (s >= segments_[z].reach_begin_mm && s <= segments_[z].reach_end_mm)
+      found.push_back(static_cast<int>(z));
   }
   return found;
 }
@@ -114,7 +119,8 @@ std::vector<BlendWeight> Subdivision::weights(double arc_mm) const {
   for (const int z : reaching(arc_mm)) {
     const Segment& segment = segments_[static_cast<std::size_t>(z)];
     const double s = relative(segment, arc_mm);
-    // Overlap with a neighbour spans the same length on both sides of the cut: 0 at the reach, 1 where it ends.
+    // Overlap with a neighbour spans the same length on both sides of the cut: 0 at the reach, 1 where it
+    // ends.
     const double rise_mm = 2.0 * (segment.begin_mm - segment.reach_begin_mm);
     const double fall_mm = 2.0 * (segment.reach_end_mm - segment.end_mm);
     const auto ramp = [](double from_edge_mm, double width_mm) {

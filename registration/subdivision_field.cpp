@@ -49,7 +49,8 @@ MappedPoint SubdivisionField::map(const Eigen::Vector3d& p_cad_mm) const {
   if (follow_edge_) shift += row.dot(edge.across) * inward;
   mapped.p_scan_mm = motion * (foot.foot_mm + shift + turn * (p_cad_mm - foot.foot_mm));
   mapped.rotation_scan_from_cad = motion.linear() * turn;
-  mapped.sd_mm = {edge.sd_height_mm(foot.arc_mm, curve.closed()), edge.sd_across_mm(foot.arc_mm, curve.closed()), 0.0};
+  mapped.sd_mm = {edge.sd_height_mm(foot.arc_mm, curve.closed()),
+                  edge.sd_across_mm(foot.arc_mm, curve.closed()), 0.0};
   mapped.sd_axis_rad = edge.sd_tilt_rad(foot.arc_mm);
   mapped.from_data = edge.seen_at(foot.arc_mm);
   mapped.in_domain = foot.distance_mm <= band_mm_;

@@ -14,12 +14,13 @@ struct ContourResult {
   EdgeFit edge;          ///< found edge relative to the carried nominal
 };
 
-/// The map of subdivision ICP along the accepted contours, within band_mm of them. With follow_edge (role `edge`) a
-/// contour point goes to the edge that was found; without it, to where the segments carry it.
+/// The map of subdivision ICP along the accepted contours, within band_mm of them. With follow_edge (role
+/// `edge`) a contour point goes to the edge that was found; without it, to where the segments carry it.
 class SubdivisionField final : public DeformationField {
  public:
   /// The CAD's contours are copied; density limits say how sharply an edge can be seen at all.
-  SubdivisionField(const CadModel& cad, std::vector<ContourResult> contours, double band_mm, bool follow_edge);
+  SubdivisionField(const CadModel& cad, std::vector<ContourResult> contours, double band_mm,
+                   bool follow_edge);
 
   [[nodiscard]] MappedPoint map(const Eigen::Vector3d& p_cad_mm) const override;
   [[nodiscard]] std::string method() const override { return "subdivision"; }

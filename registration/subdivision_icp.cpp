@@ -12,13 +12,14 @@
 namespace arris {
 namespace {
 
-constexpr double kCosNormalsAgree = 0.5;    // correspondences need normals within 60 degrees
-constexpr double kAnneal = 0.6;             // robust scale of the next round over this one
-constexpr double kScaleSigmas = 3.0;        // where annealing stops
-constexpr double kMisfitSigmaMm = 0.15;     // a rigid segment on a bending part: misfit along the normal
-constexpr double kCoveredRatio = 0.4;       // of a segment's arc bins, for its motion to count as data
+constexpr double kCosNormalsAgree = 0.5;  // correspondences need normals within 60 degrees
+constexpr double kAnneal = 0.6;           // robust scale of the next round over this one
+constexpr double kScaleSigmas = 3.0;      // where annealing stops
+constexpr double kMisfitSigmaMm = 0.15;   // a rigid segment on a bending part: misfit along the normal
+constexpr double kCoveredRatio = 0.4;     // of a segment's arc bins, for its motion to count as data
 constexpr double kBinMm = 5.0;
-constexpr double kFarthestStartMm = 60.0;   // edge points farther from the rigidly placed contour are another edge's
+constexpr double kFarthestStartMm =
+    60.0;  // edge points farther from the rigidly placed contour are another edge's
 constexpr std::size_t kChunk = 512;
 
 /// Scan points beside the contour that hold the segments' tilt.
@@ -38,8 +39,13 @@ class FootFit {
  public:
   FootFit(const CadModel& cad, std::size_t contour, const ScanModel& scan, const EdgeData& data,
           const RigidMotion& rigid, const SubdivisionIcpOptions& options, const ContourMotion* earlier)
-      : cad_(cad), curve_(cad.contours[contour]), contour_(static_cast<int>(contour)), scan_(scan), data_(data),
-        options_(options), subdivision_(curve_, options.subdivision) {
+      : cad_(cad),
+        curve_(cad.contours[contour]),
+        contour_(static_cast<int>(contour)),
+        scan_(scan),
+        data_(data),
+        options_(options),
+        subdivision_(curve_, options.subdivision) {
     SegmentFit start;
     start.scan_from_cad = rigid;
     fits_.assign(subdivision_.segments().size(), start);
@@ -84,7 +90,9 @@ class FootFit {
   double across_scale_mm() const {
     return std::max(kScaleSigmas * data_.sigma_across_mm, anneal_ * start_scale_mm_);
   }
-  double normal_scale_mm() const { return std::max(kScaleSigmas * sigma_normal_mm_, anneal_ * start_scale_mm_); }
+  double normal_scale_mm() const {
+    return std::max(kScaleSigmas * sigma_normal_mm_, anneal_ * start_scale_mm_);
+  }
   bool settled() const {
     return anneal_ * start_scale_mm_ <= kScaleSigmas * std::min(data_.sigma_across_mm, sigma_normal_mm_);
   }
@@ -102,7 +110,8 @@ class FootFit {
     std::vector<std::vector<StabilityPoint>> of(fits_.size());
     for (std::size_t i = 0; i < arc.size(); ++i)
       if (arc[i] >= 0.0)
-        for (const int z : subdivision_.reaching(arc[i])) of[static_cast<std::size_t>(z)].push_back({i, arc[i]});
+        for (const int z : subdivision_.reaching(arc[i]))
+          of[static_cast<std::size_t>(z)].push_back({i, arc[i]});
     const std::size_t limit = static_cast<std::size_t>(options_.stability_points);
     for (std::vector<StabilityPoint>& list : of) {
       if (list.size() <= limit) continue;
@@ -202,17 +211,20 @@ class FootFit {
     ++fits_[z].pairs;
   }
 
-  /// The segments that an edge point belongs to: by its known place, else by its foot under the motion of the segment
-  /// where the first segment's motion puts it (all motions are near each other).
-  std::vector<int> segments_of(std::size_t i, const std::vector<RigidMotion>& current, double reach_mm) const {
+  /// The segments that an edge point belongs to: by its known place, else by its foot under the motion of the
+  /// segment where the first segment's motion puts it (all motions are near each other).
+  std::vector<int> segments_of(std::size_t i, const std::vector<RigidMotion>& current,
+                               double reach_mm) const {
     if (!data_.arc_mm.empty())
-      return static_cast<int>(data_.contour[i]) == contour_ ? subdivision_.reaching(data_.arc_mm[i]) : std::vector<int>{};
+      return static_cast<int>(data_.contour[i]) == contour_ ? subdivision_.reaching(data_.arc_mm[i])
+                                                            : std::vector<int>{};
     const Eigen::Vector3d& e = data_.points_mm[i];
     const EdgePair first = pair_edge(cad_, current.front() * e, reach_mm + kFarthestStartMm);
     if (first.contour != contour_) return {};
     const std::vector<int> candidates = subdivision_.reaching(first.foot.arc_mm);
     if (candidates.empty()) return {};
-    const EdgePair second = pair_edge(cad_, current[static_cast<std::size_t>(candidates.front())] * e, reach_mm);
+    const EdgePair second =
+        pair_edge(cad_, current[static_cast<std::size_t>(candidates.front())] * e, reach_mm);
     return second.contour == contour_ ? subdivision_.reaching(second.foot.arc_mm) : std::vector<int>{};
   }
 
@@ -258,9 +270,10 @@ class FootFit {
   double sigma_normal_mm_ = 0.0, start_scale_mm_ = 1.0, anneal_ = 1.0;
 };
 
-/// The paper's choices: contour points and all stability points of the surface, frozen partners for the latter.
-ContourMotion paper_fit(const Curve& curve, const ScanModel& scan, const EdgeData& data, const RigidMotion& rigid,
-                        const SubdivisionIcpOptions& options) {
+/// The paper's choices: contour points and all stability points of the surface, frozen partners for the
+/// latter.
+ContourMotion paper_fit(const Curve& curve, const ScanModel& scan, const EdgeData& data,
+                        const RigidMotion& rigid, const SubdivisionIcpOptions& options) {
   const Subdivision subdivision(curve, options.subdivision);
   const NearestPoints tree(data.points_mm);
   const Contour model = resample(curve.contour(), std::max(0.5, scan.spacing_mm));
@@ -295,7 +308,8 @@ ContourMotion paper_fit(const Curve& curve, const ScanModel& scan, const EdgeDat
     for (int k = 0; k < options.max_iterations && tree.size() > 0; ++k) {
       for (int i = 0; i < fit.pairs; ++i) {
         const std::size_t index = static_cast<std::size_t>(i);
-        to[index] = data.points_mm[static_cast<std::size_t>(tree.nearest(fit.scan_from_cad * from[index]).index)];
+        to[index] =
+            data.points_mm[static_cast<std::size_t>(tree.nearest(fit.scan_from_cad * from[index]).index)];
       }
       const RigidFit rigid_fit = fit_rigid(from, to);
       if (!rigid_fit.usable()) {
@@ -322,10 +336,12 @@ void SubdivisionIcpOptions::check() const {
   subdivision.check();
   if (max_iterations < 1)
     throw Error(Fault::kRecipe, {.what = "registration.subdivision.max_iterations is out of range",
-                                 .found = std::to_string(max_iterations), .needed = "1 or more"});
+                                 .found = std::to_string(max_iterations),
+                                 .needed = "1 or more"});
   if (stability_points < 0)
     throw Error(Fault::kRecipe, {.what = "registration.subdivision.stability_points is out of range",
-                                 .found = std::to_string(stability_points), .needed = "0 or more"});
+                                 .found = std::to_string(stability_points),
+                                 .needed = "0 or more"});
 }
 
 std::vector<ContourMotion> subdivision_icp(const CadModel& cad, const ScanModel& scan, const EdgeData& data,
@@ -339,7 +355,8 @@ std::vector<ContourMotion> subdivision_icp(const CadModel& cad, const ScanModel&
       motions.push_back(paper_fit(cad.contours[c], scan, data, rigid_scan_from_cad, options));
     else
       motions.push_back(
-          FootFit(cad, c, scan, data, rigid_scan_from_cad, options, start.empty() ? nullptr : &start[c]).run());
+          FootFit(cad, c, scan, data, rigid_scan_from_cad, options, start.empty() ? nullptr : &start[c])
+              .run());
   }
   return motions;
 }

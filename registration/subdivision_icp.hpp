@@ -19,7 +19,8 @@ enum class StabilityPoints {
 /// How a segment is matched.
 enum class SegmentMatch {
   kPaper,  ///< model point to nearest scan contour point, Horn's closed form
-  kFoot,   ///< scan edge point to its foot on the contour, across and normal only; tied softly to the neighbours
+  kFoot,   ///< scan edge point to its foot on the contour, across and normal only; tied softly to the
+           ///< neighbours
 };
 
 /// Options of subdivision ICP; the paper's parameters are recipe keys of [registration.subdivision].
@@ -40,8 +41,8 @@ struct SubdivisionIcpOptions {
 /// Outcome of one segment.
 struct SegmentFit {
   RigidMotion scan_from_cad = RigidMotion::Identity();
-  double rms_mm = 0.0;    ///< weighted, across the contour
-  int pairs = 0;          ///< scan edge points (kFoot) or contour points (kPaper)
+  double rms_mm = 0.0;  ///< weighted, across the contour
+  int pairs = 0;        ///< scan edge points (kFoot) or contour points (kPaper)
   int iterations = 0;
   bool from_data = true;  ///< false: too few pairs, the neighbours decided
   std::string stop;
@@ -52,8 +53,8 @@ class ContourMotion {
  public:
   ContourMotion(const Curve& nominal, Subdivision subdivision, std::vector<SegmentFit> fits);
 
-  /// Blended motion at s: carries the contour point to the weighted mean of the segments' images (eq. 7) and turns by
-  /// the log-mean of their rotations, so that tool axes blend as well.
+  /// Blended motion at s: carries the contour point to the weighted mean of the segments' images (eq. 7) and
+  /// turns by the log-mean of their rotations, so that tool axes blend as well.
   [[nodiscard]] RigidMotion at(double arc_mm) const;
   [[nodiscard]] const std::vector<SegmentFit>& fits() const { return fits_; }
   [[nodiscard]] const Subdivision& subdivision() const { return subdivision_; }
@@ -75,11 +76,12 @@ struct EdgeData {
 
 /// Subdivision ICP of section 3 for every accepted contour, starting from one rigid motion.
 ///   data      scan edge points; scan gives the surface for the stability points
-///   start     motions of an earlier pass to begin with (empty: the rigid motion); then only the last rounds are run
-///   returns   one ContourMotion a contour
-///   cost      O(iterations * (edge points + stability points)); deterministic
+///   start     motions of an earlier pass to begin with (empty: the rigid motion); then only the last rounds
+///   are run returns   one ContourMotion a contour cost      O(iterations * (edge points + stability
+///   points)); deterministic
 [[nodiscard]] std::vector<ContourMotion> subdivision_icp(const CadModel& cad, const ScanModel& scan,
-                                                         const EdgeData& data, const RigidMotion& rigid_scan_from_cad,
+                                                         const EdgeData& data,
+                                                         const RigidMotion& rigid_scan_from_cad,
                                                          const SubdivisionIcpOptions& options,
                                                          const std::vector<ContourMotion>& start = {});
 

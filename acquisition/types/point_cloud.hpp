@@ -8,12 +8,12 @@
 
 namespace arris {
 
-/// Points of one scan, mm, in the scanner's frame: float32 about a double offset that is chosen at ingest and kept,
-/// so that coordinates far from the origin lose nothing (UTM-sized text files, a robot base 10 m away).
+/// Points of one scan, mm, in the scanner's frame: float32 about a double offset that is chosen at ingest and
+/// kept, so that coordinates far from the origin lose nothing (UTM-sized text files, a robot base 10 m away).
 struct PointCloud {
   Eigen::Vector3d offset_mm = Eigen::Vector3d::Zero();  ///< add it to points_mm to get the file's coordinates
   std::vector<Eigen::Vector3f> points_mm;               ///< about offset_mm
-  std::vector<Eigen::Vector3f> normals;                 ///< empty, or one unit vector a point, out of the material
+  std::vector<Eigen::Vector3f> normals;  ///< empty, or one unit vector a point, out of the material
 
   [[nodiscard]] std::size_t size() const { return points_mm.size(); }
   [[nodiscard]] bool empty() const { return points_mm.empty(); }

@@ -7,7 +7,8 @@
 
 namespace arris {
 
-/// Triangles over shared vertices, mm; counter-clockwise seen from the air side, so that normals leave the material.
+/// Triangles over shared vertices, mm; counter-clockwise seen from the air side, so that normals leave the
+/// material.
 struct TriangleMesh {
   std::vector<Eigen::Vector3d> vertices_mm;
   std::vector<std::array<std::int32_t, 3>> triangles;
