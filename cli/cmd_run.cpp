@@ -173,7 +173,7 @@ int run_main_job(const RunArgs& args) {
   record.program_note = why_no_program(args, record, cell.has_value());
   if (record.program_note.empty()) {
     record.program_written = true;
-    programs = robot_programs(record, *cell, spin_from_name(recipe.toolpath.spin));
+    programs = robot_programs(record, *cell, recipe.robot.controller, spin_from_name(recipe.toolpath.spin));
     for (const auto& [name, bytes] : programs)
       record.program_note += (record.program_note.empty() ? "" : ", ") + name;
   }

@@ -7,14 +7,14 @@
 #include "report/write_json.hpp"
 #include "toolpath/formats/csv.hpp"
 #include "toolpath/robot/compare.hpp"
+#include "toolpath/robot/dialect.hpp"
 #include "toolpath/robot/program.hpp"
-#include "toolpath/robot/rapid.hpp"
-#include "toolpath/robot/read_rapid.hpp"
 
 namespace arris {
 namespace {
 
-NamedBytes rapid_module(const RunRecord& record, const Cell& cell, Spin spin, bool dry_run) {
+NamedBytes robot_program(const RunRecord& record, const Cell& cell, const Dialect& dialect, Spin spin,
+                         bool dry_run) {
   const auto hash = [](std::string_view bytes) { return sha256_hex(bytes); };
   ProgramOptions options;
   options.spin = spin;
@@ -22,9 +22,9 @@ NamedBytes rapid_module(const RunRecord& record, const Cell& cell, Spin spin, bo
   options.result_hash = record.result_hash;
   options.comments = {record.version, "part " + record.part_number};
   const Program program = make_program(record.correction, record.cloud.offset_mm, cell, options);
-  std::string text = write_rapid(program, hash);
-  const std::string name = dry_run ? "program_dry.mod" : "program.mod";
-  const std::vector<std::string> wrong = differences(program, read_rapid(text, name), hash);
+  std::string text = dialect.write(program, hash);
+  const std::string name = std::string(dry_run ? "program_dry" : "program") + dialect.extension;
+  const std::vector<std::string> wrong = differences(program, dialect.read(text, name), hash);
   if (!wrong.empty())
     throw Error(
         Fault::kBug,
@@ -34,8 +34,11 @@ NamedBytes rapid_module(const RunRecord& record, const Cell& cell, Spin spin, bo
 
 }  // namespace
 
-std::vector<NamedBytes> robot_programs(const RunRecord& record, const Cell& cell, Spin spin) {
-  return {rapid_module(record, cell, spin, false), rapid_module(record, cell, spin, true)};
+std::vector<NamedBytes> robot_programs(const RunRecord& record, const Cell& cell,
+                                       const std::string& controller, Spin spin) {
+  const Dialect& dialect = dialect_from_name(controller);
+  return {robot_program(record, cell, dialect, spin, false),
+          robot_program(record, cell, dialect, spin, true)};
 }
 
 std::vector<NamedBytes> result_files(const RunRecord& record) {

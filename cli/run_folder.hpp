@@ -16,9 +16,11 @@ namespace arris {
 /// A file of the run folder: its name and bytes.
 using NamedBytes = std::pair<std::string, std::string>;
 
-/// The robot programs of an accepted correction: the program and its dry-run twin, each read back by the
-/// recogniser and compared with what was meant before it is handed out. Throws Error(kBug) when they differ.
-[[nodiscard]] std::vector<NamedBytes> robot_programs(const RunRecord& record, const Cell& cell, Spin spin);
+/// The robot programs of an accepted correction in the language of a controller (robot.controller): the
+/// program and its dry-run twin, each read back by the recogniser and compared with what was meant before it
+/// is handed out. Throws Error(kBug) when they differ.
+[[nodiscard]] std::vector<NamedBytes> robot_programs(const RunRecord& record, const Cell& cell,
+                                                     const std::string& controller, Spin spin);
 
 /// Every result file of a run, in memory; corrected.csv and programs only when the record is accepted.
 [[nodiscard]] std::vector<NamedBytes> result_files(const RunRecord& record);

@@ -10,6 +10,7 @@
 #include "fixtures/synthetic/write.hpp"
 #include "tests/end_to_end/job.hpp"
 #include "toolpath/robot/read_rapid.hpp"
+#include "toolpath/robot/read_vplus.hpp"
 
 namespace arris {
 namespace {
@@ -123,6 +124,36 @@ INSTANTIATE_TEST_SUITE_P(Three, FeParts,
                          ::testing::Values(FeCase{"porthole", 0.4, 1.5, 6.0},
                                            FeCase{"nosecone", 0.5, 3.0, 6.0}, FeCase{"sheet", 0.4, 1.2, 0.0}),
                          [](const auto& one) { return one.param.part; });
+
+/// The same job for a V+ controller: frames that are turned, a tool by signal number, the dry-run twin.
+TEST(FePartsVplus, ProgramsAgreeWithTheCorrectedPathThroughTheCellsFrames) {
+  const Job job("fe/porthole");
+  job.replace("recipe.toml", "controller = \"rapid\"", "controller = \"vplus\"");
+  job.put("cell.toml",
+          "[frames]\n"
+          "robot_from_scan = { xyz_mm = [850.0, -20.0, 400.0], quat_wxyz = [0.8, 0.0, 0.6, 0.0] }\n"
+          "robot_from_work = { xyz_mm = [800.0, 10.0, 390.0], quat_wxyz = [0.6, 0.0, 0.0, 0.8] }\n"
+          "[robot]\nspindle_output = \"97\"\nspindle_ready = \"1097\"\nmax_points = 100\n");
+  job.put_scan("scan.ply", testing::fe_scan("porthole", testing::usual_options("porthole"), 21));
+  const Ran ran = job.run("scan.ply", "out");
+  ASSERT_TRUE(ran.code == 0 || ran.code == 4 || ran.code == 7) << ran.code << ran.err;
+  ASSERT_FALSE(job.names("out").contains("program.mod"));
+
+  const Table corrected = testing::read_table(job.file("out/corrected.csv"));
+  const Cell cell = read_cell(job.file("cell.toml"));
+  for (const bool dry_run : {false, true}) {
+    const std::string name = dry_run ? "program_dry.v2" : "program.v2";
+    const Reading reading = read_vplus(testing::text_of(job.file("out/" + name)), name);
+    EXPECT_NE(corrected.comment.find(reading.result_hash), std::string::npos);
+    ASSERT_EQ(reading.works.count(cell.work_name), 1u);
+    Moves moves = moves_of(reading);
+    for (Vector3d& tip_mm : moves.tip_mm) tip_mm = cell.robot_from_work * tip_mm;
+    for (Vector3d& axis : moves.axis) axis = cell.robot_from_work.linear() * axis;
+    expect_program(corrected, moves, cell, dry_run ? cell.dry_run_offset_mm : 0.0);
+    EXPECT_EQ(moves.switches, !dry_run);
+    EXPECT_FALSE(moves.on_at_end);
+  }
+}
 
 /// Walls of the cut, strays and missing patches, as a hand scanner brings them.
 TEST(FePartsDirty, WallsStraysAndGapsStillGiveAPath) {

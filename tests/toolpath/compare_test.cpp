@@ -73,8 +73,8 @@ const Meddled kMeddled[] = {
     {[](Reading& r) { r.on_error[0].value = 1; }, "the error handler"},
     {[](Reading& r) { r.on_error[0].output = "doX"; }, "the error handler"},
     {[](Reading& r) { r.tools.clear(); }, "another set of tools"},
-    {[](Reading& r) { r.tools["tSpindle"].mass_kg = 2.0; }, "another tool mass"},
-    {[](Reading& r) { r.tools["tSpindle"].centre_mm[1] = 1.0; }, "another centre of gravity"},
+    {[](Reading& r) { r.tools["tSpindle"].load->mass_kg = 2.0; }, "another tool mass"},
+    {[](Reading& r) { r.tools["tSpindle"].load->centre_mm[1] = 1.0; }, "another centre of gravity"},
     {[](Reading& r) { r.tools["tSpindle"].flange_from_tool.xyz_mm[2] += 1.0; }, "the tool off by 1.0"},
     {[](Reading& r) { r.works["wSecond"] = {}; }, "another set of work objects"},
     {[](Reading& r) { r.works["wPart"].xyz_mm[0] += 1.0; }, "the work object off by 1.0"}};

@@ -1,5 +1,6 @@
 #include "tests/toolpath/programs.hpp"
 
+#include <cmath>
 #include <random>
 
 namespace arris::test {
@@ -26,6 +27,13 @@ Eigen::Matrix3d awkward_rotation(std::mt19937_64& random, int i) {
               Eigen::AngleAxisd(0.5 * kPi, Eigen::Vector3d::UnitY()) *
               Eigen::AngleAxisd(kPi * uniform(random), Eigen::Vector3d::UnitX()))
           .toRotationMatrix();
+    case 6: {  // and about z, as tools stand on flat parts: upright or upside down, or nearly
+      const double tilt = (i % 16 < 8 ? 0.0 : kPi) + (i % 3 == 0 ? 0.0 : std::pow(10.0, -3 - i % 7));
+      return (Eigen::AngleAxisd(kPi * uniform(random), Eigen::Vector3d::UnitZ()) *
+              Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitY()) *
+              Eigen::AngleAxisd(kPi * uniform(random), Eigen::Vector3d::UnitZ()))
+          .toRotationMatrix();
+    }
     case 5:
       return Eigen::AngleAxisd(1e-6 * uniform(random), axis).toRotationMatrix();  // next to none
     default:
@@ -45,8 +53,12 @@ std::string toy_hash(std::string_view text) {
   return hex;
 }
 
-Cell some_cell() {
+Cell some_cell(const std::string& controller) {
   Cell cell;
+  if (controller == "vplus") {
+    cell.spindle_output = "97";
+    cell.spindle_ready = "1097";
+  }
   cell.robot_from_scan.translation() << 850.0, -120.5, 400.25;
   cell.robot_from_scan.linear() =
       Eigen::AngleAxisd(0.7, Eigen::Vector3d(0.2, -0.3, 1.0).normalized()).toRotationMatrix();
@@ -73,11 +85,11 @@ Correction ring(int rows, double radius_mm, bool closed, int path) {
   return correction;
 }
 
-Program random_program(std::uint64_t seed, int moves) {
+Program random_program(std::uint64_t seed, int moves, const std::string& controller) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   Program program;
-  program.cell = some_cell();
+  program.cell = some_cell(controller);
   program.name = program.cell.program_name;
   program.result_hash = toy_hash("result");
   program.comments = {"Arris test", "part A-1042"};
@@ -90,6 +102,7 @@ Program random_program(std::uint64_t seed, int moves) {
     move.speed_mm_s = speeds_mm_s[random() % 4];
     move.zone_mm = zones_mm[random() % 4];
     move.joint = random() % 10 == 0;
+    if (i % 97 == 3 || i % 331 == 5 || i + 1 == moves) move.zone_mm = 0.0;
     program.events.emplace_back(move);
     if (i % 97 == 3) program.events.emplace_back(SetOutput{program.cell.spindle_output, random() % 2 == 0});
     if (i % 331 == 5)

@@ -52,7 +52,7 @@ TEST(ReadRapid, ReadsWhatTheControllerWouldDo) {
   EXPECT_EQ(shifted.pose.quat_wxyz, (std::array<double, 4>{0.0, 0.0, 1.0, 0.0}));
   EXPECT_EQ(shifted.zone_mm, 0.3);
   EXPECT_EQ(std::get<ReadMove>(read.events[4]).zone_mm, 10.0);
-  EXPECT_EQ(read.tools.at("tSpindle").mass_kg, 2.5);
+  EXPECT_EQ(read.tools.at("tSpindle").load->mass_kg, 2.5);
   EXPECT_EQ(read.works.at("wPart").xyz_mm[0], 850.0);
   EXPECT_FALSE(read.configurations_off);  // ConfJ was left on
 }

@@ -57,6 +57,9 @@ void Cell::check() const {
   need(cut_speed_mm_s >= 0.1 && cut_speed_mm_s <= 7000.0, "cut_speed_mm_s", cut_speed_mm_s, "0.1 to 7000");
   need(turn_speed_rad_s >= 0.01 && turn_speed_rad_s <= 10.0, "turn_speed_rad_s", turn_speed_rad_s,
        "0.01 to 10");
+  need(turn_speed_ratio >= 0.01 && turn_speed_ratio <= 1.0, "turn_speed_ratio", turn_speed_ratio,
+       "0.01 to 1");
+  need(robot_number >= 1 && robot_number <= 15, "robot_number", robot_number, "1 to 15");
   need(zone_mm >= 0.0 && zone_mm <= 200.0, "zone_mm", zone_mm, "0 to 200");
   need(clearance_mm > 0.0 && clearance_mm <= 2000.0, "clearance_mm", clearance_mm, "> 0 and <= 2000");
   need(dry_run_offset_mm > 0.0 && dry_run_offset_mm <= 2000.0, "dry_run_offset_mm", dry_run_offset_mm,

@@ -25,10 +25,13 @@ struct Cell {
   std::string program_name = "ArrisPath";  ///< module; the dry-run twin adds "Dry"
   std::string entry_name = "main";         ///< the procedure that the controller starts
   std::string work_name = "wPart";         ///< work object in the program
-  bool define_work = true;               ///< false: the controller has it, and it must equal robot_from_work
+  bool define_work = true;  ///< false: the controller has it, and it must equal robot_from_work
+  std::string work_points;  ///< V+: taught points "a, b, c": work = FRAME(a, b, c, a); empty: robot_from_work
+  int robot_number = 1;     ///< V+: which robot of the controller, SELECT ROBOT
   double approach_speed_mm_s = 100.0;    ///< clearance, retract and air moves
   double cut_speed_mm_s = 20.0;          ///< rows without a feed of their own
   double turn_speed_rad_s = 0.78539816;  ///< the tool's reorientation
+  double turn_speed_ratio = 0.2;         ///< V+: the same, to the robot's full speed of turns; in (0, 1]
   double zone_mm = 0.3;              ///< corner rounding between rows; never more than half a step; 0: stop
   double clearance_mm = 50.0;        ///< above the first and the last row of a polyline, along the tool axis
   double dry_run_offset_mm = 50.0;   ///< the twin runs this far off, along the tool axis

@@ -65,15 +65,42 @@ class Comparison {
       say("another set of tools");
     } else if (cell.define_tool) {
       pose(cell.flange_from_tool, tool->second.flange_from_tool, "the tool");
-      if (std::abs(tool->second.mass_kg - cell.tool_mass_kg) > 0.001) say("another tool mass");
-      if (distance_mm(cell.tool_centre_mm, tool->second.centre_mm) > options_.position_mm)
-        say("another centre of gravity");
+      if (tool->second.load) load(*tool->second.load);
     }
+    if (read_.robot.value_or(cell.robot_number) != cell.robot_number) say("another robot");
+    work();
+  }
+
+  void load(const ReadLoad& read) {
+    const Cell& cell = meant_.cell;
+    if (!(std::abs(read.mass_kg - cell.tool_mass_kg) <= 0.001)) say("another tool mass");
+    if (!(distance_mm(cell.tool_centre_mm, read.centre_mm) <= options_.position_mm))
+      say("another centre of gravity");
+  }
+
+  void work() {
+    const Cell& cell = meant_.cell;
+    const bool taught = cell.define_work && !cell.work_points.empty();
+    const bool stated = cell.define_work && !taught;
     const auto work = read_.works.find(cell.work_name);
-    if (read_.works.size() != (cell.define_work ? 1u : 0u) || (work == read_.works.end()) == cell.define_work)
-      say("another set of work objects");
-    else if (cell.define_work)
-      pose(cell.robot_from_work, work->second, "the work object");
+    const auto points = read_.taught_works.find(cell.work_name);
+    if (read_.works.size() != (stated ? 1u : 0u) || (work != read_.works.end()) != stated ||
+        read_.taught_works.size() != (taught ? 1u : 0u) || (points != read_.taught_works.end()) != taught)
+      return say("another set of work objects");
+    if (stated) pose(cell.robot_from_work, work->second, "the work object");
+    if (!taught) return;
+    const TaughtWork& read = points->second;
+    if (read.x_from + ", " + read.x_to + ", " + read.plane != cell.work_points || read.origin != read.x_from)
+      say("the work object through other points");
+  }
+
+  void turning(const ReadMove& read) {
+    const double turn_deg_s = meant_.cell.turn_speed_rad_s * kDegPerRad;
+    const double off_deg_s = std::abs(read.turn_deg_s.value_or(turn_deg_s) - turn_deg_s);
+    const double off_ratio =
+        std::abs(read.turn_ratio.value_or(meant_.cell.turn_speed_ratio) - meant_.cell.turn_speed_ratio);
+    const bool stated = read.turn_deg_s || read.turn_ratio;
+    if (!stated || !(off_deg_s <= 0.001) || !(off_ratio <= 1e-5)) say("another turning speed");
   }
 
   void check(const Move& meant, const ReadEvent& event) {
@@ -82,11 +109,10 @@ class Comparison {
     pose(meant.work_from_tool, read->pose, "the pose is");
     if (read->joint != meant.joint) say("another kind of move");
     if (!(std::abs(read->speed_mm_s - meant.speed_mm_s) <= options_.speed_mm_s)) say("another speed");
-    const double turn_deg_s = meant_.cell.turn_speed_rad_s * kDegPerRad;
-    if (!(std::abs(read->turn_deg_s - turn_deg_s) <= 0.001)) say("another turning speed");
+    turning(*read);
     const bool stops = meant.zone_mm == 0.0;
-    if (stops != (read->zone_mm == 0.0) || !(std::abs(read->zone_mm - meant.zone_mm) <= options_.zone_mm))
-      say("another zone");
+    const double off_mm = std::abs(read->zone_mm.value_or(meant.zone_mm) - meant.zone_mm);
+    if (stops != (read->zone_mm == 0.0) || !(off_mm <= options_.zone_mm)) say("another zone");
     if (read->tool != meant_.cell.tool_name) say("another tool");
     if (read->work != meant_.cell.work_name) say("another work object");
   }

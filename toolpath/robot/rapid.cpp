@@ -1,12 +1,12 @@
 #include "toolpath/robot/rapid.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 
 #include "acquisition/types/error.hpp"
 #include "toolpath/formats/number.hpp"
+#include "toolpath/robot/program_text.hpp"
 #include "toolpath/robot/rapid_names.hpp"
 
 namespace arris {
@@ -41,12 +41,6 @@ string pose_text(const RigidMotion& motion) {
   return "[" + triple(motion.translation(), kMmDecimals) + "," + quadruple(turn) + "]";
 }
 
-string ascii(string text) {
-  for (char& c : text)
-    if (c < ' ' || c > '~') c = (c == '\t' || c == '\n' || c == '\r') ? ' ' : '?';
-  return text;
-}
-
 // Names for values that are written once and used often: vPath1, vPath2, ... in the order of first use.
 class Named {
  public:
@@ -71,7 +65,11 @@ class Writer {
 
   string run(const std::function<string(std::string_view)>& sha256_hex) {
     for (const Event& event : program_.events) std::visit([&](const auto& e) { take(e); }, event);
-    const string head = "MODULE " + program_.name + "\n" + comments() + "  ! body_sha256 = ";
+    const string head =
+        "MODULE " + program_.name + "\n" +
+        head_text(
+            program_, "  ! ",
+            "Axis configurations are not computed: ConfJ and ConfL are off. Run the dry-run twin first.");
     const string body = "\n" + data() + procedures() + "ENDMODULE\n";
     return head + sha256_hex(head + body) + body;
   }
@@ -88,7 +86,7 @@ class Writer {
     const string target = "p" + std::to_string(++targets_count_);
     targets_ += "  CONST robtarget " + target + ":=[" + triple(pose.translation(), kMmDecimals) + "," +
                 quadruple(turn_) + ",[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n";
-    const string speed = speeds_.name_of(speed_text(move.speed_mm_s));
+    const string speed = speeds_.name_of(speed_data(move.speed_mm_s));
     const string zone = move.zone_mm > 0.0 ? zones_.name_of(zone_text(move.zone_mm)) : "fine";
     line(string(move.joint ? "MoveJ " : "MoveL ") + target + "," + speed + "," + zone + "," +
          cell_.tool_name + "\\WObj:=" + cell_.work_name + ";");
@@ -107,13 +105,9 @@ class Writer {
     waits_ = true;
   }
 
-  [[nodiscard]] string speed_text(double speed_mm_s) const {
-    const string speed = fixed_text(speed_mm_s, kSpeedDecimals);
-    if (speed.find_first_not_of("0.") == string::npos)
-      throw Error(Fault::kRecipe,
-                  "a speed of " + std::to_string(speed_mm_s) + " mm/s, need at least 0.001 mm/s");
-    return "[" + speed + "," + fixed_text(cell_.turn_speed_rad_s * kDegPerRad, kSpeedDecimals) +
-           ",5000,1000]";
+  [[nodiscard]] string speed_data(double speed_mm_s) const {
+    return "[" + speed_text(speed_mm_s) + "," +
+           fixed_text(cell_.turn_speed_rad_s * kDegPerRad, kSpeedDecimals) + ",5000,1000]";
   }
 
   // Tip, reorientation and external axes alike; a tenth of it in degrees, as in the controller's own z1, z5,
@@ -126,18 +120,6 @@ class Writer {
   void line(const string& text) {
     if (parts_.empty()) parts_.emplace_back();
     parts_.back() += "    " + text + "\n";
-  }
-
-  [[nodiscard]] string comments() const {
-    string text;
-    for (const string& comment : program_.comments) text += "  ! " + ascii(comment) + "\n";
-    if (program_.dry_run)
-      text += "  ! DRY RUN: " + fixed_text(cell_.dry_run_offset_mm, 1) +
-              " mm off along the tool axis, speeds times " + fixed_text(cell_.dry_run_speed_ratio, 2) +
-              ", no output is switched.\n";
-    text +=
-        "  ! Axis configurations are not computed: ConfJ and ConfL are off. Run the dry-run twin first.\n";
-    return text + "  ! result_hash = " + ascii(program_.result_hash) + "\n";
   }
 
   [[nodiscard]] string data() const {
@@ -168,13 +150,9 @@ class Writer {
       entry += "    " + name + ";\n";
       others += "  PROC " + name + "()\n" + parts_[i] + "  ENDPROC\n";
     }
-    if (switches()) entry += "  ERROR\n    SetDO " + cell_.spindle_output + ",0;\n    RAISE;\n";
+    if (switches_outputs(program_))
+      entry += "  ERROR\n    SetDO " + cell_.spindle_output + ",0;\n    RAISE;\n";
     return entry + "  ENDPROC\n" + others;
-  }
-
-  [[nodiscard]] bool switches() const {
-    return std::any_of(program_.events.begin(), program_.events.end(),
-                       [](const Event& event) { return std::holds_alternative<SetOutput>(event); });
   }
 
   const Program& program_;

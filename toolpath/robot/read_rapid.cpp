@@ -11,11 +11,12 @@ namespace arris {
 namespace {
 
 using namespace rapid_reader;  // NOLINT: the tree that this file walks
+using program_reader::refuse;
 using std::string;
 
 // The shape of data, as a pattern: b truth, s text, n number, u 9E9, ( ) a list.
 struct Shape {
-  const string& source;
+  const Source& source;
   const Declaration& of;
   const char* pattern;
   std::vector<double> numbers;
@@ -42,13 +43,13 @@ struct Shape {
   }
 };
 
-Shape shaped(const string& source, const Declaration& of, const Value& value, const char* pattern) {
+Shape shaped(const Source& source, const Declaration& of, const Value& value, const char* pattern) {
   Shape shape{source, of, pattern, {}, {}};
   shape.match(value);
   return shape;
 }
 
-ReadPose pose_at(const std::vector<double>& n, std::size_t begin, const string& source, int line) {
+ReadPose pose_at(const std::vector<double>& n, std::size_t begin, const Source& source, int line) {
   ReadPose pose;
   double length2 = 0.0;
   for (std::size_t i = 0; i < 3; ++i) pose.xyz_mm[i] = n[begin + i];
@@ -79,9 +80,10 @@ std::optional<int> predefined(const string& key, char stem, const std::set<int>&
 
 class Runner {
  public:
-  Runner(std::string_view text, const string& source) : module_(parse_rapid(text, source)), source_(source) {
+  Runner(std::string_view text, const string& file)
+      : module_(parse_rapid(text, file)), source_{file, "RAPID"} {
     out_.name = module_.name;
-    comments(text);
+    program_reader::read_head(text, module_.comments, source_, out_);
   }
 
   Reading run() {
@@ -97,24 +99,6 @@ class Runner {
   }
 
  private:
-  void comments(std::string_view text) {
-    out_.hashed_text = string(text);
-    for (const Comment& comment : module_.comments) {
-      out_.comments.push_back(comment.text);
-      stated(comment.text, "result_hash = ", out_.result_hash);
-      if (stated(comment.text, "body_sha256 = ", out_.body_sha256))
-        out_.hashed_text.erase(comment.begin + comment.text.size() - out_.body_sha256.size(),
-                               out_.body_sha256.size());
-    }
-  }
-
-  bool stated(const string& comment, const string& key, string& into) const {
-    if (comment.compare(0, key.size(), key) != 0) return false;
-    if (!into.empty()) refuse(source_, 1, "two lines of " + key, "one");
-    into = comment.substr(key.size());
-    return true;
-  }
-
   const Declaration& data(const Name& name, const char* type, int line) const {
     const auto found = module_.data.find(name.key);
     if (found == module_.data.end() || found->second.type != type || !found->second.has_value)
@@ -139,11 +123,12 @@ class Runner {
     const Shape shape = shaped(source_, found, found.value, "(b((nnn)(nnnn))(n(nnn)(nnnn)nnn))");
     ReadTool read;
     read.flange_from_tool = pose_at(shape.numbers, 0, source_, found.line);
-    read.mass_kg = shape.numbers[7];
-    for (std::size_t i = 0; i < 3; ++i) read.centre_mm[i] = shape.numbers[8 + i];
+    ReadLoad& load = read.load.emplace();
+    load.mass_kg = shape.numbers[7];
+    for (std::size_t i = 0; i < 3; ++i) load.centre_mm[i] = shape.numbers[8 + i];
     if (!shape.truths[0])
       refuse(source_, found.line, "a tool that stands still", "a tool that the robot holds");
-    if (!(read.mass_kg > 0.0)) refuse(source_, found.line, "a tool without mass", "a mass above 0");
+    if (!(load.mass_kg > 0.0)) refuse(source_, found.line, "a tool without mass", "a mass above 0");
     out_.tools[found.written] = read;
   }
 
@@ -322,7 +307,7 @@ class Runner {
   }
 
   Module module_;
-  string source_;
+  Source source_;
   Reading out_;
   std::set<string> called_;
   bool conf_j_on_ = true, conf_l_on_ = true, conf_seen_on_ = false, moved_ = false;

@@ -5,6 +5,8 @@
 namespace arris::rapid_reader {
 namespace {
 
+using namespace program_reader;  // NOLINT: tokens and cursor
+
 const std::set<std::string> kWords = {"module",   "endmodule", "proc",  "endproc",   "error",     "if",
                                       "then",     "endif",     "const", "pers",      "var",       "exit",
                                       "raise",    "return",    "true",  "false",     "movej",     "movel",
@@ -12,10 +14,16 @@ const std::set<std::string> kWords = {"module",   "endmodule", "proc",  "endproc
                                       "wobjdata", "bool",      "offs",  "speeddata", "robtarget", "zonedata"};
 const std::set<std::string> kTypes = {"tooldata", "wobjdata", "speeddata", "zonedata", "robtarget", "bool"};
 
-class Parser {
+const Language kRapid = {.name = "RAPID",
+                         .comment = '!',
+                         .signs = {":=", "[", "]", "(", ")", ",", ";", "\\", "-"},
+                         .in_names = "_",
+                         .unused_number = "9E9"};
+
+class Parser : private Cursor {
  public:
-  Parser(std::string_view text, const std::string& source)
-      : tokens_(tokens_of(text, source)), source_(source) {}
+  Parser(std::string_view text, const std::string& file)
+      : Cursor(tokens_of(text, kRapid, file), {file, kRapid.name}) {}
 
   Module run() {
     word("module");
@@ -29,45 +37,14 @@ class Parser {
   }
 
  private:
-  [[nodiscard]] const Token& here() const { return tokens_.all[at_]; }
-  [[noreturn]] void wrong(const std::string& needed) const {
-    const Token& token = here();
-    const bool end = token.kind == TokenKind::kEnd;
-    refuse(source_, token.line,
-           end ? "the end of the text" : "'" + (token.written.empty() ? token.text : token.written) + "'",
-           needed);
-  }
-  [[nodiscard]] bool is_word(const char* text) const {
-    return here().kind == TokenKind::kName && here().text == text;
-  }
-  [[nodiscard]] bool is_sign(const char* text) const {
-    return here().kind == TokenKind::kSign && here().text == text;
-  }
-  void word(const char* text) {
-    if (!is_word(text)) wrong("the word " + std::string(text));
-    ++at_;
-  }
-  void sign(const char* text) {
-    if (!is_sign(text)) wrong("'" + std::string(text) + "'");
-    ++at_;
-  }
   Name name() {
     if (here().kind != TokenKind::kName || kWords.count(here().text) > 0) wrong("a name");
-    const Token& token = tokens_.all[at_++];
+    const Token& token = take();
     return {token.text, token.written};
-  }
-  double number() {
-    const bool minus = is_sign("-");
-    if (minus) ++at_;
-    if (here().kind != TokenKind::kNumber) wrong("a number");
-    const double value = here().number;
-    if (minus && value == 0.0) wrong("a zero without sign");
-    ++at_;
-    return minus ? -value : value;
   }
   int bit() {
     if (here().kind != TokenKind::kNumber || (here().text != "0" && here().text != "1")) wrong("0 or 1");
-    return tokens_.all[at_++].text == "1" ? 1 : 0;
+    return take().text == "1" ? 1 : 0;
   }
 
   Value value() {
@@ -76,7 +53,7 @@ class Parser {
     if (is_sign("[")) {
       out.kind = ValueKind::kList;
       do {
-        ++at_;
+        take();
         if (depth_ > 8) wrong("fewer brackets");
         ++depth_;
         out.items.push_back(value());
@@ -85,14 +62,14 @@ class Parser {
       sign("]");
     } else if (here().kind == TokenKind::kText) {
       out.kind = ValueKind::kText;
-      ++at_;
+      take();
     } else if (here().kind == TokenKind::kUnused) {
       out.kind = ValueKind::kUnused;
-      ++at_;
+      take();
     } else if (is_word("true") || is_word("false")) {
       out.kind = ValueKind::kTruth;
       out.truth = is_word("true");
-      ++at_;
+      take();
     } else {
       out.number = number();
     }
@@ -102,13 +79,13 @@ class Parser {
   void declaration() {
     Declaration found;
     found.line = here().line;
-    found.storage = tokens_.all[at_++].text;
+    found.storage = take().text;
     if (here().kind != TokenKind::kName || kTypes.count(here().text) == 0) wrong("a data type");
-    found.type = tokens_.all[at_++].text;
+    found.type = take().text;
     const Name declared = name();
     found.written = declared.written;
     if (is_sign(":=")) {
-      ++at_;
+      take();
       found.value = value();
       found.has_value = true;
     }
@@ -132,7 +109,7 @@ class Parser {
     sign(")");
     found.body = statements();
     if (is_word("error")) {
-      ++at_;
+      take();
       found.on_error = statements();
       if (found.on_error.empty()) wrong("what to do on an error");
     }
@@ -159,7 +136,7 @@ class Parser {
     } else if (is_word("confj") || is_word("confl")) {
       conf(out);
     } else if (is_word("setdo")) {
-      ++at_;
+      take();
       out.kind = StatementKind::kSet;
       out.signal = name();
       sign(",");
@@ -167,14 +144,14 @@ class Parser {
     } else if (is_word("waitdi")) {
       wait(out);
     } else if (is_word("tpwrite")) {
-      ++at_;
+      take();
       out.kind = StatementKind::kPrint;
       if (here().kind != TokenKind::kText) wrong("a string");
       if (here().text.size() > 80) wrong("a string of at most 80 characters");
-      ++at_;
+      take();
     } else if (is_word("exit") || is_word("raise")) {
       out.kind = is_word("exit") ? StatementKind::kExit : StatementKind::kRaise;
-      ++at_;
+      take();
     } else {
       out.kind = StatementKind::kCall;
       out.signal = name();
@@ -184,7 +161,7 @@ class Parser {
   }
 
   void conditional(Statement& out) {
-    ++at_;
+    take();
     out.kind = StatementKind::kIf;
     out.signal = name();
     word("then");
@@ -195,27 +172,28 @@ class Parser {
   void conf(Statement& out) {
     out.kind = StatementKind::kConf;
     out.joint = is_word("confj");
-    ++at_;
+    take();
     sign("\\");
     out.on = is_word("on");
     if (!out.on && !is_word("off")) wrong("On or Off");
-    ++at_;
+    take();
   }
 
   void wait(Statement& out) {
-    ++at_;
+    take();
     out.kind = StatementKind::kWait;
     out.signal = name();
     sign(",");
     out.value = bit();
-    if (is_sign("\\") && tokens_.all[at_ + 1].text == "maxtime") {
-      at_ += 2;
+    if (is_sign("\\") && here(1).text == "maxtime") {
+      take();
+      take();
       sign(":=");
       out.timeout_s = number();
       if (!(out.timeout_s > 0.0)) wrong("a time above 0 before this");
     }
     if (is_sign("\\")) {
-      ++at_;
+      take();
       word("timeflag");
       sign(":=");
       out.flag = name();
@@ -225,11 +203,11 @@ class Parser {
   void move(Statement& out) {
     out.kind = StatementKind::kMove;
     out.joint = is_word("movej");
-    ++at_;
+    take();
     if (is_sign("[")) {
       out.literal = value();
     } else if (is_word("offs")) {
-      ++at_;
+      take();
       sign("(");
       out.target = name();
       for (double& part_mm : out.offset_mm) {
@@ -247,24 +225,21 @@ class Parser {
     sign(",");
     out.tool = name();
     if (is_sign("\\")) {
-      ++at_;
+      take();
       word("wobj");
       sign(":=");
       out.work = name();
     }
   }
 
-  Tokens tokens_;
-  std::string source_;
   Module module_;
-  std::size_t at_ = 0;
   int depth_ = 0;
 };
 
 }  // namespace
 
-Module parse_rapid(std::string_view text, const std::string& source) {
-  return Parser(text, source).run();
+Module parse_rapid(std::string_view text, const std::string& file) {
+  return Parser(text, file).run();
 }
 
 }  // namespace arris::rapid_reader

@@ -4,9 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "toolpath/robot/read_rapid_tokens.hpp"
+#include "toolpath/robot/read_tokens.hpp"
 
 namespace arris::rapid_reader {
+
+using program_reader::Comment;
+using program_reader::Name;
+using program_reader::Source;
 
 enum class ValueKind { kNumber, kUnused, kText, kTruth, kList };
 
@@ -26,11 +30,6 @@ struct Declaration {
 };
 
 enum class StatementKind { kConf, kMove, kSet, kWait, kIf, kPrint, kExit, kRaise, kCall };
-
-/// A name that must be looked up: in lower case, and as it stands.
-struct Name {
-  std::string key, written;
-};
 
 struct Statement {
   StatementKind kind = StatementKind::kCall;

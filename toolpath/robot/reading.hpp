@@ -2,6 +2,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -18,8 +19,9 @@ struct ReadPose {
 struct ReadMove {
   ReadPose pose;
   bool joint = false;
-  double speed_mm_s = 0.0, turn_deg_s = 0.0;
-  double zone_mm = 0.0;  ///< 0: stops there
+  double speed_mm_s = 0.0;
+  std::optional<double> turn_deg_s, turn_ratio;  ///< turning speed: of the one kind that the language states
+  std::optional<double> zone_mm = 0.0;  ///< 0: stops there; none: passes, the controller says how near
   std::string tool, work;
 };
 struct ReadSet {
@@ -35,10 +37,17 @@ struct ReadWait {
 };
 using ReadEvent = std::variant<ReadMove, ReadSet, ReadWait>;
 
-struct ReadTool {
-  ReadPose flange_from_tool;
+struct ReadLoad {
   double mass_kg = 0.0;
   std::array<double, 3> centre_mm = {0.0, 0.0, 0.0};
+};
+struct ReadTool {
+  ReadPose flange_from_tool;
+  std::optional<ReadLoad> load;  ///< none: the language states it elsewhere
+};
+/// A work object through points that are taught on the controller: x axis, towards plus y, origin.
+struct TaughtWork {
+  std::string x_from, x_to, plane, origin;
 };
 
 struct Reading {
@@ -48,10 +57,12 @@ struct Reading {
   std::string hashed_text;               ///< what body_sha256 must be the hash of: all but its digits
   std::map<std::string, ReadTool> tools;
   std::map<std::string, ReadPose> works;  ///< work objects: base from work
-  std::vector<ReadEvent> events;          ///< in the order in which the controller would meet them
-  std::vector<ReadSet> on_error;          ///< switched by the entry procedure's error handler
-  bool configurations_off = false;        ///< axis configurations are not monitored in any move
-  int longest_procedure = 0;              ///< moves
+  std::map<std::string, TaughtWork> taught_works;
+  std::optional<int> robot;         ///< which of the controller's robots; none: the language has one
+  std::vector<ReadEvent> events;    ///< in the order in which the controller would meet them
+  std::vector<ReadSet> on_error;    ///< switched by the entry procedure's error handler
+  bool configurations_off = false;  ///< axis configurations are not monitored in any move
+  int longest_procedure = 0;        ///< moves
 };
 
 }  // namespace arris

@@ -1,3 +1,4 @@
+// Every robot language: what is written comes back by the recogniser, and nothing else passes for it.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -5,8 +6,7 @@
 #include "acquisition/types/error.hpp"
 #include "tests/toolpath/programs.hpp"
 #include "toolpath/robot/compare.hpp"
-#include "toolpath/robot/rapid.hpp"
-#include "toolpath/robot/read_rapid.hpp"
+#include "toolpath/robot/dialect.hpp"
 
 namespace arris {
 namespace {
@@ -24,10 +24,19 @@ double turn_deg(const Eigen::Matrix3d& meant, const std::array<double, 4>& q) {
   return (read - meant).norm() / std::sqrt(2.0) * 57.29577951308232;  // chord of the angle; small angles
 }
 
-TEST(RapidRoundTrip, TenThousandPosesComeBackWithinAThousandth) {
-  const Program meant = random_program(1, 10000);
-  const std::string text = write_rapid(meant, toy_hash);
-  const Reading read = read_rapid(text, "program.mod");
+class RoundTrip : public testing::TestWithParam<Dialect> {
+ protected:
+  [[nodiscard]] static std::string text_of(const Program& program) {
+    return GetParam().write(program, toy_hash);
+  }
+  [[nodiscard]] static Reading read(const std::string& text) { return GetParam().read(text, "program"); }
+  [[nodiscard]] static std::string word() { return GetParam().word; }
+};
+
+TEST_P(RoundTrip, TenThousandPosesComeBackWithinAThousandth) {
+  const Program meant = random_program(1, 10000, word());
+  const std::string text = text_of(meant);
+  const Reading read = RoundTrip::read(text);
   ASSERT_EQ(read.events.size(), meant.events.size());
   double worst_mm = 0.0, worst_deg = 0.0;
   int poses = 0;
@@ -47,11 +56,12 @@ TEST(RapidRoundTrip, TenThousandPosesComeBackWithinAThousandth) {
   EXPECT_LE(worst_mm, 0.001);
   EXPECT_LE(worst_deg, 0.001);
   EXPECT_EQ(differences(meant, read, toy_hash), std::vector<std::string>());
-  EXPECT_EQ(text.find("-0.0000,"), std::string::npos);
+  for (const char* zero : {"-0.0000,", "-0.0000)", "-0.0000]"}) EXPECT_EQ(text.find(zero), std::string::npos);
+  for (char c : text) ASSERT_TRUE(c == '\n' || (c >= ' ' && c <= '~'));
   EXPECT_EQ(read.longest_procedure, 5000);
 }
 
-TEST(RapidRoundTrip, ProgramsOfCorrectionsComeBack) {
+TEST_P(RoundTrip, ProgramsOfCorrectionsComeBack) {
   for (bool dry_run : {false, true}) {
     for (Spin spin : {Spin::kFixed, Spin::kTangent, Spin::kLeastTurn}) {
       Correction correction = test::ring(90, 60.0, true);
@@ -62,31 +72,31 @@ TEST(RapidRoundTrip, ProgramsOfCorrectionsComeBack) {
       options.spin = spin;
       options.result_hash = toy_hash("x");
       const Program program =
-          make_program(correction, Eigen::Vector3d(10.0, 20.0, 30.0), test::some_cell(), options);
-      const Reading read = read_rapid(write_rapid(program, toy_hash), "program.mod");
-      EXPECT_EQ(differences(program, read, toy_hash), std::vector<std::string>());
+          make_program(correction, Eigen::Vector3d(10.0, 20.0, 30.0), test::some_cell(word()), options);
+      EXPECT_EQ(differences(program, read(text_of(program)), toy_hash), std::vector<std::string>());
     }
   }
 }
 
-TEST(RapidRoundTrip, ACellThatKnowsItsToolAndLinesDoesNotHaveThemRedefined) {
-  Cell cell = test::some_cell();
+TEST_P(RoundTrip, ACellThatKnowsItsToolAndLinesDoesNotHaveThemRedefined) {
+  Cell cell = test::some_cell(word());
   cell.define_tool = cell.define_work = false;
   cell.tool_name = "tool0";
   cell.spindle_output.clear();
   cell.spindle_ready.clear();
   const Program program = make_program(test::ring(20, 60.0, true), Eigen::Vector3d::Zero(), cell, {});
-  const std::string text = write_rapid(program, toy_hash);
-  EXPECT_EQ(text.find("tooldata"), std::string::npos);
-  EXPECT_EQ(text.find("SetDO"), std::string::npos);
-  EXPECT_EQ(differences(program, read_rapid(text, "p.mod"), toy_hash), std::vector<std::string>());
+  const Reading found = read(text_of(program));
+  EXPECT_TRUE(found.tools.empty());
+  EXPECT_TRUE(found.works.empty());
+  for (const ReadEvent& event : found.events) EXPECT_TRUE(std::holds_alternative<ReadMove>(event));
+  EXPECT_EQ(differences(program, found, toy_hash), std::vector<std::string>());
 }
 
 enum class Caught { kByGrammar, kByComparison, kByHash, kNot };
 
-Caught caught(const Program& meant, const std::string& text) {
+Caught caught(const Dialect& dialect, const Program& meant, const std::string& text) {
   try {
-    const Reading read = read_rapid(text, "mutated.mod");
+    const Reading read = dialect.read(text, "mutated");
     const auto no_hash = [&](std::string_view) { return read.body_sha256; };
     if (!differences(meant, read, no_hash).empty()) return Caught::kByComparison;
     return differences(meant, read, toy_hash).empty() ? Caught::kNot : Caught::kByHash;
@@ -96,13 +106,13 @@ Caught caught(const Program& meant, const std::string& text) {
   }
 }
 
-TEST(RapidRoundTrip, EveryMutationIsCaught) {
-  const Program meant = random_program(2, 60);
-  const std::string text = write_rapid(meant, toy_hash);
-  ASSERT_EQ(caught(meant, text), Caught::kNot);
+TEST_P(RoundTrip, EveryMutationIsCaught) {
+  const Program meant = random_program(2, 60, word());
+  const std::string text = text_of(meant);
+  ASSERT_EQ(caught(GetParam(), meant, text), Caught::kNot);
   std::mt19937_64 random(3);
   int count[4] = {0, 0, 0, 0};
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < 3000; ++i) {
     std::string mutated = text;
     const std::size_t at = random() % text.size();
     if (i % 2 == 0) {
@@ -113,7 +123,7 @@ TEST(RapidRoundTrip, EveryMutationIsCaught) {
       mutated[at] = other;
     }
     if (mutated == text) continue;
-    const Caught how = caught(meant, mutated);
+    const Caught how = caught(GetParam(), meant, mutated);
     ++count[static_cast<int>(how)];
     EXPECT_NE(how, Caught::kNot) << "at " << at << ": " << text.substr(at > 30 ? at - 30 : 0, 60);
   }
@@ -125,25 +135,43 @@ TEST(RapidRoundTrip, EveryMutationIsCaught) {
 
 // What the hash alone catches must be without effect: nothing that moves the robot by more than the
 // tolerance.
-TEST(RapidRoundTrip, ComparisonAloneCatchesEveryDigitThatMatters) {
-  const Program meant = random_program(4, 12);
-  const std::string text = write_rapid(meant, toy_hash);
+TEST_P(RoundTrip, ComparisonAloneCatchesEveryDigitThatMatters) {
+  const Program meant = random_program(4, 12, word());
+  const std::string text = text_of(meant);
+  const std::string before_x = word() == "rapid" ? " robtarget p" : "SET p = TRANS(";
   int tried = 0;
-  for (std::size_t at = text.find("robtarget"); (at = text.find("p", at)) != std::string::npos && tried < 12;
-       ++at) {
-    const std::size_t open = text.find(":=[[", at);
-    if (open == std::string::npos) break;
-    const std::size_t point = text.find('.', open);
+  for (std::size_t at = 0; (at = text.find(before_x, at)) != std::string::npos; ++at) {
+    const std::size_t point = text.find('.', at);
     for (std::size_t digit : {point - 1, point + 1, point + 2}) {  // 1, 0.1 and 0.01 mm of x
       std::string mutated = text;
       mutated[digit] = mutated[digit] == '9' ? '4' : static_cast<char>(mutated[digit] + 1);
-      const Caught how = caught(meant, mutated);
+      const Caught how = caught(GetParam(), meant, mutated);
       EXPECT_TRUE(how == Caught::kByComparison || how == Caught::kByGrammar);
     }
     ++tried;
-    at = text.find('\n', open);
   }
   EXPECT_EQ(tried, 12);
+}
+
+TEST_P(RoundTrip, EveryTruncationIsCaught) {
+  const Program meant = random_program(5, 12, word());
+  const std::string text = text_of(meant);
+  for (std::size_t length = 0; length < text.size(); ++length)
+    EXPECT_NE(caught(GetParam(), meant, text.substr(0, length)), Caught::kNot) << length;
+}
+
+TEST_P(RoundTrip, TheSameBytesEveryTime) {
+  const Program meant = random_program(6, 40, word());
+  EXPECT_EQ(text_of(meant), text_of(meant));
+  EXPECT_EQ(&dialect_from_name(word()), &dialect_from_name(word()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Languages, RoundTrip, testing::ValuesIn(dialects()),
+                         [](const auto& one) { return std::string(one.param.word); });
+
+TEST(Dialects, AnUnknownWordIsRefused) {
+  EXPECT_THROW((void)dialect_from_name("basic"), Error);
+  EXPECT_STREQ(dialect_from_name("vplus").extension, ".v2");
 }
 
 }  // namespace
