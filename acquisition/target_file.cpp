@@ -19,8 +19,7 @@ namespace {
 using files::Source;
 
 enum Column : std::size_t { kX, kY, kZ, kDiameter, kSd, kId, kKind, kColumns };
-constexpr std::array<std::string_view, kColumns> kNames{"x",     "y",  "z",   "diameter_mm",
-                                                        "sd_mm", "id", "kind"};
+constexpr std::array<std::string_view, kColumns> kNames{"x", "y", "z", "diameter_mm", "sd_mm", "id", "kind"};
 constexpr std::size_t kFewestTargets = 3, kMostTargets = 40, kMostPoints = 200;
 constexpr double kLeastDiameterMm = 5.0, kMostDiameterMm = 500.0, kMostSdMm = 100.0;
 

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <set>
 
+#include "acquisition/target_file.hpp"
 #include "cli/text_file.hpp"
+#include "registration/fixture_targets.hpp"
 
 namespace arris {
 namespace {
@@ -25,24 +27,41 @@ void add_pose(std::vector<Key>& keys, const std::string& name, CellFile::Pose& p
                   .lengths = {4}});
 }
 
+bool by_targets(const CellFile& file) {
+  return file.scan_reference == "targets";
+}
+
 std::vector<Key> frame_keys(CellFile& file) {
   std::vector<Key> keys = {
       {.name = "frames.scan_reference",
        .slot = &file.scan_reference,
        .about = "fixed: a mounted scanner; targets: a hand scanner, whose frame changes every time",
-       .words = {"fixed"},
-       .later = {"targets"}},
+       .words = {"fixed", "targets"}},
       {.name = "frames.references",
        .slot = &file.references,
-       .about = "positions of the fixture targets (csv), for scan_reference = \"targets\"",
+       .about = "places of the fixture targets in the robot's base (csv), for scan_reference = \"targets\"",
+       .required = by_targets(file),
        .example = "\"fixture_targets.csv\""},
       {.name = "frames.references_max_residual_mm",
-       .slot = &file.references_max_residual_mm,
-       .about = "targets that fit worse are refused",
-       .min = 1e-6,
-       .max = 1000.0},
+       .slot = &file.cell.targets_max_residual_mm,
+       .about = "a fixture target that is farther than this from its place is refused",
+       .min = 1e-3,
+       .max = 100.0},
+      {.name = "frames.references_clear_mm",
+       .slot = &file.cell.targets_clear_mm,
+       .about = "scan points this near to a target's sphere are its mount's and take no part",
+       .min = 0.0,
+       .max = 500.0},
+      {.name = "frames.scan_points_sd_mm",
+       .slot = &file.cell.scan_points_sd_mm,
+       .about = "standard deviation of points given with --targets that state none, each axis",
+       .min = 1e-4,
+       .max = 100.0},
   };
-  add_pose(keys, "robot_from_scan", file.robot_from_scan, "scanner's frame in the robot's base", true);
+  add_pose(keys, "robot_from_scan", file.robot_from_scan,
+           by_targets(file) ? "of a mounted scanner; left out, for the targets give it"
+                            : "scanner's frame in the robot's base",
+           !by_targets(file));
   add_pose(keys, "robot_from_work", file.robot_from_work, "work object in the robot's base", false);
   return keys;
 }
@@ -180,9 +199,31 @@ RigidMotion motion_of(const std::string& name, const CellFile::Pose& pose) {
   return motion;
 }
 
+/// The targets of a cell that is made for a hand scanner. Throws Error(kRecipe) when they can give no frame.
+void take_targets(const CellFile& file, Cell& cell) {
+  if (!file.robot_from_scan.xyz_mm.empty() || !file.robot_from_scan.quat_wxyz.empty())
+    throw Error(Fault::kRecipe, ErrorText{.what = "frames.robot_from_scan is given beside the targets",
+                                          .needed = "one of them: with scan_reference = \"targets\" the "
+                                                    "frame is solved in each scan",
+                                          .next = "leave robot_from_scan out"});
+  cell.targets = read_fixture_targets(file.references);
+  cell.targets_file = file.references;
+  const std::string why = why_list_is_unusable(cell.targets, cell.targets_max_residual_mm);
+  if (!why.empty())
+    throw Error(Fault::kRecipe, ErrorText{.what = "the fixture targets give no frame",
+                                          .where = file.references.string(),
+                                          .found = why,
+                                          .needed = "at least 3 targets, better 4, that stand apart, not on "
+                                                    "a line, at unlike distances",
+                                          .next = "set one elsewhere, or correct the list"});
+}
+
 Cell cell_of(const CellFile& file) {
   Cell cell = file.cell;
-  cell.robot_from_scan = motion_of("frames.robot_from_scan", file.robot_from_scan);
+  if (by_targets(file))
+    take_targets(file, cell);
+  else
+    cell.robot_from_scan = motion_of("frames.robot_from_scan", file.robot_from_scan);
   cell.robot_from_work = motion_of("frames.robot_from_work", file.robot_from_work);
   cell.flange_from_tool = motion_of("tool", file.flange_from_tool);
   cell.tool_centre_mm = vector_of(file.tool_centre_mm);
@@ -203,6 +244,8 @@ std::vector<Key> cell_keys(CellFile& file) {
 CellRead parse_cell(const std::filesystem::path& file, const std::string& text) {
   CellRead result;
   result.problems = read_keys(file, text, cell_keys(result.file), kReserved).problems;
+  if (by_targets(result.file))  // now it is known which keys must be there
+    result.problems = read_keys(file, text, cell_keys(result.file), kReserved).problems;
   if (!result.problems.empty()) return result;
   try {
     result.cell = cell_of(result.file);

@@ -17,13 +17,13 @@ struct CellFile {
   Pose robot_from_scan, robot_from_work{{0, 0, 0}, {1, 0, 0, 0}}, flange_from_tool{{0, 0, 0}, {1, 0, 0, 0}};
   std::string scan_reference = "fixed";
   std::filesystem::path references;
-  double references_max_residual_mm = 0.2;
   std::vector<double> tool_centre_mm = {0, 0, 50};
   double turn_speed_deg_s = 45.0;
   Cell cell;  ///< the fields that are spelt alike
 };
 
-/// The one table of keys of a cell, bound to `file`; valid while it lives.
+/// The one table of keys of a cell, bound to `file`; valid while it lives. Which keys must be given depends
+/// on file.scan_reference: robot_from_scan of a mounted scanner, references of one with targets.
 [[nodiscard]] std::vector<Key> cell_keys(CellFile& file);
 
 /// A cell with all that is wrong in it; problems empty: good.

@@ -11,6 +11,7 @@
 
 #include "acquisition/files/atomic_file.hpp"
 #include "acquisition/files/sha256.hpp"
+#include "acquisition/target_file.hpp"
 #include "acquisition/types/error.hpp"
 #include "cli/cell.hpp"
 #include "cli/console.hpp"
@@ -105,7 +106,33 @@ std::optional<fs::path> cell_file(const RunArgs& args, const Recipe& recipe) {
   return std::nullopt;
 }
 
-std::vector<InputFile> hashed_inputs(const RunArgs& args, const Recipe& recipe) {
+/// The cell as far as this run needs it: an inspection looks for its targets, to leave them out.
+std::optional<Cell> read_cell_for(const RunArgs& args, const Recipe& recipe) {
+  const std::optional<fs::path> file = cell_file(args, recipe);
+  std::optional<Cell> cell;
+  if (file) cell = read_cell(*file);
+  if (args.inspect_only && cell && cell->targets.empty()) cell.reset();
+  if (args.targets && (!cell || cell->targets.empty()))
+    throw Error(Fault::kInput, {.what = "--targets is given, and the cell has no fixture targets",
+                                .where = file ? file->string() : "no cell",
+                                .needed = "a cell with scan_reference = \"targets\"",
+                                .next = "leave --targets out, or give that cell with --cell"});
+  return cell;
+}
+
+std::optional<TargetSearch> target_search(const RunArgs& args, const Recipe& recipe,
+                                          const std::optional<Cell>& cell) {
+  if (!cell || cell->targets.empty()) return std::nullopt;
+  TargetSearch search;
+  search.list = cell->targets;
+  if (args.targets) search.points = read_scan_targets(*args.targets, unit_mm(recipe.scan.units));
+  search.options = {cell->targets_max_residual_mm, cell->scan_points_sd_mm, cell->targets_clear_mm,
+                    args.threads};
+  return search;
+}
+
+std::vector<InputFile> hashed_inputs(const RunArgs& args, const Recipe& recipe,
+                                     const std::optional<Cell>& cell) {
   std::vector<InputFile> inputs;
   const auto add = [&](const char* role, const fs::path& file) {
     if (!file.empty()) inputs.push_back({role, file.filename().string(), sha256_file(file)});
@@ -115,7 +142,11 @@ std::vector<InputFile> hashed_inputs(const RunArgs& args, const Recipe& recipe) 
   add("recipe", args.recipe);
   if (!args.inspect_only) add("path", recipe.toolpath.file);
   add("contour", recipe.contour.file);
-  if (const auto cell = cell_file(args, recipe); cell && !args.inspect_only) add("cell", *cell);
+  if (cell) {
+    add("cell", *cell_file(args, recipe));
+    add("references", cell->targets_file);
+  }
+  if (args.targets) add("targets", *args.targets);
   if (args.contours) add("contours", *args.contours);
   return inputs;
 }
@@ -137,6 +168,7 @@ fs::path default_out(const fs::path& scan) {
 std::string why_no_program(const RunArgs& args, const RunRecord& record, bool has_cell) {
   if (args.inspect_only) return "an inspection has no tool path";
   if (!record.accepted()) return "refused: no corrected path and no robot program are handed out";
+  if (record.frame_refused()) return "no robot program was written: " + record.frame->reasons.front();
   if (!has_cell)
     return "no cell is given ([cell] file in the recipe, or --cell): no robot program was written";
   return "";
@@ -152,19 +184,20 @@ int run_main_job(const RunArgs& args) {
   Journal journal(args);
   journal.stage("reading the recipe and the drawing");
   const Recipe recipe = read_recipe(args.recipe);
-  std::optional<Cell> cell;
-  if (const auto file = cell_file(args, recipe); file && !args.inspect_only) cell = read_cell(*file);
+  std::optional<Cell> cell = read_cell_for(args, recipe);
   AtomicFolder folder(args.out.value_or(default_out(args.scan)), args.force, kMark);
   const Drawing drawing = read_drawing(recipe, !args.inspect_only, args.threads);
 
   journal.stage("reading the scan");
-  const std::vector<InputFile> inputs = hashed_inputs(args, recipe);
-  Measurement measurement = read_measurement(recipe, args.scan, operators_choice(args, recipe), args.threads);
+  const std::vector<InputFile> inputs = hashed_inputs(args, recipe, cell);
+  Measurement measurement = read_measurement(recipe, args.scan, operators_choice(args, recipe),
+                                             target_search(args, recipe, cell), args.threads);
 
   Processed processed = process(recipe, drawing, measurement, args.inspect_only, args.threads,
                                 [&](const std::string& what) { journal.stage(what); });
   RunRecord& record = processed.record;
   record.inputs = inputs;
+  if (cell) record.frame_max_residual_mm = cell->targets_max_residual_mm;
   record.report_time = report_time(args.scan);
   record.result_hash = sha256_hex(report::canonical_text(record, processed.field_parameters));
 
@@ -173,11 +206,14 @@ int run_main_job(const RunArgs& args) {
   record.program_note = why_no_program(args, record, cell.has_value());
   if (record.program_note.empty()) {
     record.program_written = true;
+    if (record.frame) cell->robot_from_scan = record.frame->robot_from_scan;
     programs = robot_programs(record, *cell, recipe.robot.controller, spin_from_name(recipe.toolpath.spin));
     for (const auto& [name, bytes] : programs)
       record.program_note += (record.program_note.empty() ? "" : ", ") + name;
   }
   for (const std::string& reason : record.refusals) journal.log("warning", reason);
+  if (record.frame_refused())
+    for (const std::string& reason : record.frame->reasons) journal.log("warning", reason);
   fill(folder, result_files(record));
   fill(folder, programs);
   fill(folder, journal.files(record.result_hash));

@@ -9,10 +9,11 @@ namespace arris {
 struct RunArgs {
   std::filesystem::path recipe, scan;
   std::optional<std::filesystem::path> out, contours, cell;  ///< none: <scan stem>.arris; found; the recipe's
-  bool force = false;                                        ///< replace an existing run folder
-  bool inspect_only = false;                                 ///< no tool path: shape and contours alone
-  bool json = false;                                         ///< the outcome as JSON on stdout
-  int threads = 0;                                           ///< 0: all cores
+  std::optional<std::filesystem::path> targets;  ///< points of fixture targets that the scanner gave
+  bool force = false;                            ///< replace an existing run folder
+  bool inspect_only = false;                     ///< no tool path: shape and contours alone
+  bool json = false;                             ///< the outcome as JSON on stdout
+  int threads = 0;                               ///< 0: all cores
 };
 
 /// The main job, from files to a complete run folder. Prints through cli/console.

@@ -47,6 +47,10 @@ void add_run(CLI::App& app, const Common& common, Chosen& chosen, bool inspect) 
       ->option_text("DIR");
   command->add_option("--contours", args->contours, "the operator's choice, from arris contours --accept")
       ->option_text("FILE");
+  command
+      ->add_option("--targets", args->targets,
+                   "points of the fixture targets that the scanner's software gave (csv)")
+      ->option_text("FILE");
   if (!inspect)
     command->add_option("--cell", args->cell, "station file; replaces the one the recipe names")
         ->option_text("FILE");

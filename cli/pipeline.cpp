@@ -65,6 +65,7 @@ void describe_inputs(const Recipe& recipe, const Drawing& drawing, const Measure
   record.cad = drawing.mesh;
   record.cad_contours = drawing.accepted;
   record.nominal_path = drawing.path;
+  record.frame = measurement.frame;
 }
 
 RegistrationOptions local_options(const Recipe& recipe, const Eigen::Vector3d& offset_mm, int threads) {
@@ -149,6 +150,8 @@ Processed process(const Recipe& recipe, const Drawing& drawing, Measurement& mea
     record.refusals.insert(record.refusals.end(), record.correction.reasons.begin(),
                            record.correction.reasons.end());
     record.notes.insert(record.notes.end(), record.correction.notes.begin(), record.correction.notes.end());
+    if (record.accepted() && record.frame && record.frame->usable())
+      record.robot_sd = row_uncertainty(record.correction, measurement.cloud.offset_mm, *record.frame);
   }
   stage("measuring deviations");
   record.deviation_mm = signed_deviation_mm(cad.surface, found.rigid.scan_from_cad,

@@ -1,5 +1,6 @@
 #include "cli/run_summary.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "cli/console.hpp"
@@ -17,6 +18,17 @@ std::string line(const char* format, Values... values) {
   return text;
 }
 
+std::string frame_line(const RunRecord& record) {
+  if (record.frame_refused()) return "REFUSED";
+  const auto& targets = record.frame->targets;
+  const auto found = std::count_if(targets.begin(), targets.end(), [](const auto& t) { return t.found; });
+  double worst_mm = 0.0;
+  for (const TargetSighting& sighting : targets) worst_mm = std::max(worst_mm, sighting.residual_mm);
+  return line("SOLVED from %d of %d fixture targets, largest residual %.3f mm (at most %.3f)",
+              static_cast<int>(found), static_cast<int>(targets.size()), worst_mm,
+              record.frame_max_residual_mm);
+}
+
 }  // namespace
 
 void print_summary(const RunRecord& record, const std::filesystem::path& folder, double total_s, bool json) {
@@ -28,6 +40,10 @@ void print_summary(const RunRecord& record, const std::filesystem::path& folder,
                  record.result_hash.substr(0, 12) + ")");
   console::print("correction   " + report::correction_word(record));
   for (const std::string& reason : record.refusals) console::print("             " + reason);
+  if (record.frame && record.has_toolpath) {
+    console::print("frame        " + frame_line(record));
+    for (const std::string& reason : record.frame->reasons) console::print("             " + reason);
+  }
   console::print("inspection   " + report::verdict_word(record.inspection_verdict()));
   const report::ContourErrorSummary errors = report::contour_error_summary(record.contour_errors);
   if (errors.rigid.count > 0) {

@@ -13,9 +13,9 @@
 namespace arris {
 namespace {
 
-constexpr double kReachLimits = 10.0;         // a target may be this many limits from its place, and be named
-constexpr double kReachRatio = 0.25;          // but never this much of the smallest distance in the list
-constexpr double kOnTargetRatio = 1.05;       // of the radius: scan points that belong to the target
+constexpr double kReachLimits = 10.0;    // a target may be this many limits from its place, and be named
+constexpr double kReachRatio = 0.25;     // but never this much of the smallest distance in the list
+constexpr double kOnTargetRatio = 0.05;  // of the radius: how far off a sphere its own points may be
 constexpr double kLeastRadiusMm = 1.0, kMostRadiusMm = 1000.0;  // worth looking for
 constexpr std::array<double, 6> kUnitRatios = {25.4, 10.0, 1000.0, 1.0 / 25.4, 0.1, 0.001};
 
@@ -93,8 +93,7 @@ double fitting_ratio(Targets list, const SphereFinder& finder, std::span<const S
   for (const double ratio : kUnitRatios) {
     std::vector<FixtureTarget> other = scaled(list, ratio);
     const auto fits = [&](const Seen& at) {
-      const auto matches =
-          target_matches(other, at.targets, reach_mm(other, options.max_residual_mm));
+      const auto matches = target_matches(other, at.targets, reach_mm(other, options.max_residual_mm));
       return !matches.empty() && matches.front().worst_mm <= options.max_residual_mm;
     };
     if (fits(look_for(other, finder, point_targets, options.point_sd_mm))) return ratio;
@@ -135,9 +134,10 @@ std::string misfit(Targets list, const Seen& seen, const TargetMatch& match, dou
   const std::vector<Culprit> moved = culprits(list, seen, match, limit_mm);
   if (moved.size() == 1) {
     const Culprit& one = moved.front();
-    return words("fixture target %s is %.2f mm from its place as the others show it (at most %.2f): it has "
-                 "moved, or its line in the list is wrong",
-                 list[one.target].id.c_str(), one.distance_mm, limit_mm);
+    return words(
+        "fixture target %s is %.2f mm from its place as the others show it (at most %.2f): it has "
+        "moved, or its line in the list is wrong",
+        list[one.target].id.c_str(), one.distance_mm, limit_mm);
   }
   std::string names;
   for (std::size_t t = 0; t < list.size(); ++t)
@@ -169,9 +169,10 @@ std::string nothing_fits(Targets list, const Seen& seen, double limit_mm) {
   if (!line.empty())
     return "the fixture targets found (" + line +
            ") lie nearly on a line: a turn about it stays unknown; show another one";
-  return words("no three of the %zu possible fixture targets in the scan stand to each other as targets of "
-               "the list do (within %.1f mm)",
-               seen.targets.size(), reach_mm(list, limit_mm));
+  return words(
+      "no three of the %zu possible fixture targets in the scan stand to each other as targets of "
+      "the list do (within %.1f mm)",
+      seen.targets.size(), reach_mm(list, limit_mm));
 }
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
@@ -208,8 +209,7 @@ void carry_uncertainty(Targets list, const Seen& seen, const TargetMatch& match,
   frame.covariance = inverse * noise * inverse;
 }
 
-void describe(Targets list, const Seen& seen, const TargetMatch& match, double limit_mm,
-              TargetFrame& frame) {
+void describe(Targets list, const Seen& seen, const TargetMatch& match, double limit_mm, TargetFrame& frame) {
   frame.robot_from_scan = match.robot_from_scan;
   for (std::size_t t = 0; t < list.size(); ++t) {
     TargetSighting& sighting = frame.targets[t];
@@ -227,11 +227,12 @@ void describe(Targets list, const Seen& seen, const TargetMatch& match, double l
   carry_uncertainty(list, seen, match, frame);
 }
 
-void take_points(const SphereFinder& finder, TargetFrame& frame) {
+void take_points(const SphereFinder& finder, double clear_mm, TargetFrame& frame) {
   for (const TargetSighting& sighting : frame.targets) {
     if (!sighting.found || sighting.target.kind != TargetKind::kSphere) continue;
+    const double radius_mm = 0.5 * sighting.target.diameter_mm;
     const auto on =
-        finder.points_near(sighting.scan_mm, 0.5 * kOnTargetRatio * sighting.target.diameter_mm);
+        finder.points_near(sighting.scan_mm, radius_mm + std::max(clear_mm, kOnTargetRatio * radius_mm));
     frame.points.insert(frame.points.end(), on.begin(), on.end());
   }
   std::sort(frame.points.begin(), frame.points.end());
@@ -273,14 +274,13 @@ TargetFrame solve_targets(Targets list, std::span<const Eigen::Vector3d> points_
   }
   const ChosenMatch chosen = choose_match(list, matches, limit_mm);
   describe(list, seen, chosen.match, limit_mm, frame);
-  take_points(finder, frame);
+  take_points(finder, options.clear_mm, frame);
   if (fits_mirrored(list, seen, chosen.match.count(), limit_mm))
     frame.reasons.emplace_back(
         "the fixture targets fit their list as a mirror image: the scan, or the list, has another hand");
   else if (chosen.ambiguous)
     frame.reasons.push_back(ambiguity(list, chosen.match, chosen.other));
-  if (chosen.match.worst_mm > limit_mm)
-    frame.reasons.push_back(misfit(list, seen, chosen.match, limit_mm));
+  if (chosen.match.worst_mm > limit_mm) frame.reasons.push_back(misfit(list, seen, chosen.match, limit_mm));
   add_notes(chosen.match.count(), frame);
   return frame;
 }

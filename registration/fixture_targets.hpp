@@ -15,6 +15,7 @@ namespace arris {
 struct TargetOptions {
   double max_residual_mm = 0.2;  ///< a target that fits worse is refused
   double point_sd_mm = 0.05;     ///< of a scanned point whose file states none, each axis
+  double clear_mm = 25.0;        ///< scan points this near to a sphere found belong to its mount
   int threads = 0;
 };
 
@@ -25,7 +26,7 @@ struct TargetSighting {
   double residual_mm = 0.0;  ///< distance of its place in the list from where the scan has it, carried
   bool over_limit = false;
   Eigen::Vector3d scan_mm = Eigen::Vector3d::Zero();  ///< where the scan has it; frame of the points given
-  double sd_mm = 0.0;      ///< of that place, each axis (root mean square)
+  double sd_mm = 0.0;                                 ///< of that place, each axis (root mean square)
   std::size_t points = 0;  ///< of a sphere: scan points that its centre was fitted to
 };
 
@@ -37,11 +38,11 @@ struct TargetFrame {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Vector3d pivot_mm = Eigen::Vector3d::Zero();  ///< robot's frame: mean place of the targets found
   std::vector<TargetSighting> targets;                 ///< in the order of the list
-  std::size_t extra = 0;               ///< spheres and points that are no target of the list
-  std::vector<std::int32_t> points;    ///< scan points that lie on a target found, ascending
-  std::vector<std::string> reasons;    ///< why it is not usable, in plain words
-  std::vector<std::string> notes;      ///< worth a line
-  double unit_ratio = 1.0;             ///< not 1: the list fits when it is scaled by this
+  std::size_t extra = 0;                               ///< spheres and points that are no target of the list
+  std::vector<std::int32_t> points;  ///< scan points on a sphere found or its mount, ascending
+  std::vector<std::string> reasons;  ///< why it is not usable, in plain words
+  std::vector<std::string> notes;    ///< worth a line
+  double unit_ratio = 1.0;           ///< not 1: the list fits when it is scaled by this
   [[nodiscard]] bool usable() const { return reasons.empty(); }
 };
 

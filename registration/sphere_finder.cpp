@@ -18,10 +18,10 @@ constexpr double kThinRatio = 0.1;   // of the radius: spacing of the points tha
 constexpr double kCellRatio = 0.15;  // of the radius: votes are counted in blocks of 3 x 3 x 3 such cells
 constexpr int kPlaneNeighbours = 12;
 constexpr std::size_t kFewestVotes = 8, kMostTried = 2000, kMostPeaks = 20000, kMostSpheres = 60;
-constexpr double kSurroundingsRatio = 1.3;  // of the radius: what is looked at round a peak
-constexpr double kShellRatio = 0.12;        // of the radius: near enough to judge normals
-constexpr double kNormalCosine = 0.9;       // 26 degrees from the radius
-constexpr double kNormalShare = 0.7;        // of the points near the sphere have its normals
+constexpr double kSurroundingsRatio = 1.3;              // of the radius: what is looked at round a peak
+constexpr double kShellRatio = 0.12;                    // of the radius: near enough to judge normals
+constexpr double kNormalCosine = 0.9;                   // 26 degrees from the radius
+constexpr double kNormalShare = 0.7;                    // of the points near the sphere have its normals
 constexpr double kApartRatio = 0.5, kTriedRatio = 0.1;  // of the radius: another sphere, another start
 
 using Cell = std::array<std::int64_t, 3>;
@@ -88,7 +88,8 @@ std::vector<Peak> peaks_of(const std::vector<Eigen::Vector3d>& votes_mm, double 
       for (std::int64_t y = -1; y <= 1; ++y) {  // the three cells along z are neighbours in the order
         const Cell low{middle[0] + x, middle[1] + y, middle[2] - 1};
         auto at = std::lower_bound(cells.begin(), cells.end(), low);
-        for (; at != cells.end() && (*at)[0] == low[0] && (*at)[1] == low[1] && (*at)[2] <= low[2] + 2; ++at) {
+        for (; at != cells.end() && (*at)[0] == low[0] && (*at)[1] == low[1] && (*at)[2] <= low[2] + 2;
+             ++at) {
           const Count& count = counts[static_cast<std::size_t>(at - cells.begin())];
           block.votes += count.votes;
           block.sum_mm += count.sum_mm;
@@ -143,8 +144,7 @@ struct Voters {
       squares += u * u.transpose();
     }
     constexpr double kLeastSpread = 0.03;  // looser than the fit's own
-    return turned >= kFewestVotes &&
-           static_cast<double>(turned) >= kNormalShare * static_cast<double>(all) &&
+    return turned >= kFewestVotes && static_cast<double>(turned) >= kNormalShare * static_cast<double>(all) &&
            least_spread(squares, turned) > kLeastSpread;
   }
 };

@@ -11,9 +11,9 @@ namespace {
 constexpr double kStartGateRatio = 0.1, kLeastGateRatio = 1e-4, kGateSigmas = 4.0;
 constexpr double kMadToSigma = 1.4826;
 constexpr int kShrinkingRounds = 15, kMostRounds = 30;
-constexpr double kLeastSpread = 0.04;     // a cap of 24 degrees
-constexpr double kCylinderMargin = 2.0;   // over what a band of a cylinder shows within the gate
-constexpr double kMostInsideRatio = 0.05; // of the points on the sphere
+constexpr double kLeastSpread = 0.04;      // a cap of 24 degrees
+constexpr double kCylinderMargin = 2.0;    // over what a band of a cylinder shows within the gate
+constexpr double kMostInsideRatio = 0.05;  // of the points on the sphere
 constexpr double kRadiusSigmas = 4.0;
 
 /// The points within the gate, with sums of the linearised fit.
@@ -102,8 +102,8 @@ std::optional<FoundSphere> fit_sphere(std::span<const Eigen::Vector3d> points_mm
       return std::nullopt;
     found.centre_mm += shell.squares.ldlt().solve(shell.moments_mm);
     if (round < kShrinkingRounds)
-      gate_mm = std::max({0.5 * gate_mm, kGateSigmas * robust_sigma_mm(shell.off_mm),
-                          kLeastGateRatio * radius_mm});
+      gate_mm =
+          std::max({0.5 * gate_mm, kGateSigmas * robust_sigma_mm(shell.off_mm), kLeastGateRatio * radius_mm});
   }
   shell = shell_of(points_mm, candidates, found.centre_mm, radius_mm, gate_mm);
   if (!holds(shell, radius_mm, gate_mm, options)) return std::nullopt;

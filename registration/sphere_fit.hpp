@@ -16,7 +16,8 @@ namespace arris {
                                                     const SphereOptions& options);
 
 /// Smallest eigenvalue of the mean of u u^T over unit directions: how well a sphere seen in these directions
-/// fixes its centre. 1/3: seen all round; a cap of half-angle t: (2 - cos t - cos^2 t) / 6; 0: a great circle.
+/// fixes its centre. 1/3: seen all round; a cap of half-angle t: (2 - cos t - cos^2 t) / 6; 0: a great
+/// circle.
 [[nodiscard]] double least_spread(const Eigen::Matrix3d& sum_of_squares, std::size_t count);
 
 }  // namespace arris

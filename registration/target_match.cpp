@@ -11,8 +11,8 @@
 namespace arris {
 namespace {
 
-constexpr double kLineRatio = 0.05;   // spread across over spread along
-constexpr double kLeastSdMm = 1e-4;   // of a pair: a target may be stated exact
+constexpr double kLineRatio = 0.05;  // spread across over spread along
+constexpr double kLeastSdMm = 1e-4;  // of a pair: a target may be stated exact
 constexpr double kSameDiameterMm = 1e-6;
 constexpr int kCarryRounds = 3;
 

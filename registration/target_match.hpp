@@ -33,8 +33,8 @@ struct TargetMatch {
 /// axes, and that of the list; 1/mm^2.
 [[nodiscard]] double pair_weight(const FixtureTarget& target, const SeenTarget& seen);
 
-/// Horn's closed form over the pairs of a match, weighted with pair_weight(). Fills motion and residuals; false when the
-/// pairs are fewer than three or nearly on a line (see on_a_line).
+/// Horn's closed form over the pairs of a match, weighted with pair_weight(). Fills motion and residuals;
+/// false when the pairs are fewer than three or nearly on a line (see on_a_line).
 bool solve_match(std::span<const FixtureTarget> list, std::span<const SeenTarget> seen, TargetMatch& match);
 
 /// Whether places lie so near to a line that a turn about it would be told by less than a twentieth of their

@@ -38,6 +38,16 @@ std::string number_row(const std::vector<std::string>& cells, const std::string&
   return tag("tr", html) + "\n";
 }
 
+std::string matrix_table(const RigidMotion& motion) {
+  std::string rows;
+  for (int row = 0; row < 4; ++row) {
+    std::string cells;
+    for (int col = 0; col < 4; ++col) cells += tag("td", mm(motion.matrix()(row, col), col == 3 ? 4 : 8));
+    rows += tag("tr", cells);
+  }
+  return tag("div", tag("table", rows, "matrix"), "scroll");
+}
+
 std::string mm(double value, int digits) {
   return std::isfinite(value) ? minus_text(value, digits) : "&ndash;";
 }

@@ -55,6 +55,7 @@ std::string correction_why(const RunRecord& record) {
     return record.refusals.front() + (more == 0 ? "" : " (and " + std::to_string(more) + " more)");
   }
   if (!record.has_toolpath) return "this was an inspection without a tool path";
+  if (record.frame_refused()) return "the corrected path is good in the scan's frame; no program: see below";
   if (record.program_written) return "the corrected path may be used; programs: " + record.program_note;
   return "the corrected path may be used" + (record.program_note.empty() ? "" : "; " + record.program_note);
 }
@@ -90,16 +91,6 @@ std::string inputs_table(const RunRecord& record) {
                           tag("td", escaped(input.sha256), "mono hash")) +
             "\n";
   return tag("table", rows);
-}
-
-std::string matrix_table(const RigidMotion& motion) {
-  std::string rows;
-  for (int row = 0; row < 4; ++row) {
-    std::string cells;
-    for (int col = 0; col < 4; ++col) cells += tag("td", mm(motion.matrix()(row, col), col == 3 ? 4 : 8));
-    rows += tag("tr", cells);
-  }
-  return tag("div", tag("table", rows, "matrix"), "scroll");
 }
 
 // Standard deviations from the covariance: the three turns and the three moves, each in its own unit.
@@ -199,6 +190,12 @@ std::string banner(const RunRecord& record) {
   if (!record.accepted())
     html += tag("div",
                 tag("strong", "Why it is refused. No program was written.") + list_of("ul", record.refusals),
+                "reasons") +
+            "\n";
+  else if (record.frame_refused())
+    html += tag("div",
+                tag("strong", "Why no program was written: the scanner's frame is not known.") +
+                    list_of("ul", record.frame->reasons),
                 "reasons") +
             "\n";
   return html;

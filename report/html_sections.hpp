@@ -15,6 +15,7 @@ namespace arris::report::html {
 [[nodiscard]] std::string deviation_section(const RunRecord& record);
 [[nodiscard]] std::string contour_error_section(const RunRecord& record);
 [[nodiscard]] std::string path_section(const RunRecord& record);
+[[nodiscard]] std::string cell_section(const RunRecord& record);
 [[nodiscard]] std::string worst_points_section(const RunRecord& record);
 [[nodiscard]] std::string registration_section(const RunRecord& record);
 [[nodiscard]] std::string notes_and_definitions(const RunRecord& record);
@@ -30,6 +31,8 @@ namespace arris::report::html {
 /// "0.123" or a dash for what is not known; plain text without unit.
 [[nodiscard]] std::string mm(double value, int digits = 3);
 [[nodiscard]] std::string signed_mm(double value, int digits = 3);
+/// A motion as its four rows.
+[[nodiscard]] std::string matrix_table(const RigidMotion& motion);
 [[nodiscard]] std::string percent(double ratio, int digits = 1);
 
 }  // namespace arris::report::html

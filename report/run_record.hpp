@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,7 +11,9 @@
 #include "acquisition/types/frames.hpp"
 #include "acquisition/types/point_cloud.hpp"
 #include "acquisition/types/triangle_mesh.hpp"
+#include "registration/fixture_targets.hpp"
 #include "toolpath/correct.hpp"
+#include "toolpath/robot/row_uncertainty.hpp"
 #include "toolpath/toolpath.hpp"
 
 namespace arris {
@@ -127,11 +130,18 @@ struct RunRecord {
   Judged judged_as_scanned, judged_pulled_back;
   std::vector<ContourError> contour_errors;
 
+  // Cell
+  std::optional<TargetFrame> frame;      ///< of a cell with fixture targets; file coordinates of the scan
+  double frame_max_residual_mm = 0.0;    ///< the cell's limit
+  std::vector<RowUncertainty> robot_sd;  ///< one a corrected row, when correction and frame are good
+
   // Robot program
-  bool program_written = false;  ///< only when ACCEPTED and a cell is given
+  bool program_written = false;  ///< only when ACCEPTED, a cell is given and the scanner's frame is known
   std::string program_note;      ///< why there is none, or its file names
 
   [[nodiscard]] bool accepted() const { return refusals.empty(); }
+  /// A program was asked for, and fixture targets were to give the scanner's frame and did not.
+  [[nodiscard]] bool frame_refused() const { return has_toolpath && frame && !frame->usable(); }
   /// Inspection verdict: pulled_back when clamped, as_scanned when free.
   [[nodiscard]] Verdict inspection_verdict() const {
     return state == "free" ? judged_as_scanned.verdict : judged_pulled_back.verdict;

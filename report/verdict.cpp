@@ -82,7 +82,7 @@ std::string correction_word(const RunRecord& record) {
 }
 
 int run_exit_code(const RunRecord& record) {
-  if (!record.accepted()) return 5;
+  if (!record.accepted() || record.frame_refused()) return 5;
   switch (record.inspection_verdict()) {
     case Verdict::kFail:
       return 4;
@@ -103,7 +103,10 @@ std::vector<std::string> next_steps(const RunRecord& record) {
     steps.push_back("If it is refused a second time, call the process engineer and show this page.");
     return steps;
   }
-  if (record.program_written)
+  if (record.frame_refused()) {
+    steps.emplace_back("Do not run the robot on this part: where the scanner stood is not known.");
+    steps.emplace_back("Clear the reason below, scan again with the fixture targets in view, run again.");
+  } else if (record.program_written)
     steps.push_back("Run the dry-run program first, then the program.");
   else if (record.has_toolpath)
     steps.push_back("The corrected path is ready, but no robot program was written.");

@@ -27,7 +27,8 @@ namespace arris::report {
 [[nodiscard]] std::string correction_word(
     const RunRecord& record);  ///< "ACCEPTED", "REFUSED", "NOT ASKED FOR"
 
-/// 5 refused (whatever the inspection says), 4 FAIL, 7 INDETERMINATE, 0 otherwise.
+/// 5 refused, correction or scanner's frame (whatever the inspection says), 4 FAIL, 7 INDETERMINATE, 0
+/// otherwise.
 [[nodiscard]] int run_exit_code(const RunRecord& record);
 
 /// What the operator does next, one sentence each, the first first.

@@ -20,6 +20,7 @@ std::string write_html(const RunRecord& record) {
   html += html::deviation_section(record);
   html += html::contour_error_section(record);
   html += html::path_section(record);
+  html += html::cell_section(record);
   html += html::worst_points_section(record);
   html += html::registration_section(record);
   html += html::notes_and_definitions(record);

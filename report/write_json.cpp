@@ -60,6 +60,11 @@ Json acquisition(const RunRecord& record) {
           {"spacing_mm", number(record.spacing_mm)}, {"noise_sigma_mm", number(record.noise_sigma_mm)}};
 }
 
+Json six_digits(double value) {
+  const double scale = value == 0.0 ? 1.0 : std::pow(10.0, 5.0 - std::floor(std::log10(std::abs(value))));
+  return std::isfinite(value) ? Json(std::round(value * scale) / scale) : Json(nullptr);
+}
+
 Json alignment(const RunRecord& record) {
   const AlignmentSummary& a = record.alignment;
   Json json;
@@ -75,12 +80,52 @@ Json alignment(const RunRecord& record) {
   json["covariance_6x6"] = Json(nullptr);
   if (!a.covariance_6x6.empty()) {  // entries reach down to 1e-12 rad^2: not rounded to 1e-6, but to 6 digits
     Json rows = Json::array();
-    for (const double value : a.covariance_6x6) {
-      const double scale = value == 0.0 ? 1.0 : std::pow(10.0, 5.0 - std::floor(std::log10(std::abs(value))));
-      rows.push_back(std::isfinite(value) ? Json(std::round(value * scale) / scale) : Json(nullptr));
-    }
+    for (const double value : a.covariance_6x6) rows.push_back(six_digits(value));
     json["covariance_6x6"] = rows;
   }
+  return json;
+}
+
+Json target(const TargetSighting& sighting) {
+  const bool is_sphere = sighting.target.kind == TargetKind::kSphere, found = sighting.found;
+  return {{"id", sighting.target.id},
+          {"kind", is_sphere ? "sphere" : "point"},
+          {"diameter_mm", number_or_null(sighting.target.diameter_mm, is_sphere)},
+          {"robot_mm", vector3(sighting.target.place_mm)},
+          {"robot_sd_mm", number(sighting.target.sd_mm)},
+          {"found", found},
+          {"scan_mm", found ? vector3(sighting.scan_mm) : Json(nullptr)},
+          {"scan_sd_mm", number_or_null(sighting.sd_mm, found)},
+          {"points", sighting.points},
+          {"residual_mm", number_or_null(sighting.residual_mm, found)},
+          {"over_limit", sighting.over_limit}};
+}
+
+/// The scanner's frame from fixture targets; null without such a cell.
+Json cell(const RunRecord& record) {
+  if (!record.frame) return nullptr;
+  const TargetFrame& frame = *record.frame;
+  Json json;
+  json["scan_reference"] = "targets";
+  json["solved"] = frame.usable();
+  json["reasons"] = frame.reasons;
+  json["max_residual_mm"] = number(record.frame_max_residual_mm);
+  json["targets"] = Json::array();
+  for (const TargetSighting& sighting : frame.targets) json["targets"].push_back(target(sighting));
+  json["not_in_the_list"] = frame.extra;
+  json["robot_from_scan"] = frame.usable() ? matrix(frame.robot_from_scan) : Json(nullptr);
+  json["covariance_6x6"] = Json(nullptr);
+  json["pivot_robot_mm"] = frame.usable() ? vector3(frame.pivot_mm) : Json(nullptr);
+  if (frame.usable()) {
+    json["covariance_6x6"] = Json::array();
+    for (int i = 0; i < 36; ++i) json["covariance_6x6"].push_back(six_digits(frame.covariance(i / 6, i % 6)));
+  }
+  json["row_sd_robot_mm"] = Json::array();
+  for (const RowUncertainty& row : record.robot_sd)
+    json["row_sd_robot_mm"].push_back({{"normal", number(row.normal_mm)},
+                                       {"across", number(row.across_mm)},
+                                       {"along", number(row.along_mm)},
+                                       {"frame", number(row.frame_mm)}});
   return json;
 }
 
@@ -244,6 +289,7 @@ std::string write_json(const RunRecord& record) {
   json["contour_errors"] = contour_errors(record);
   json["worst_points"] = worst(record);
   json["colour_scale"] = colour_scale(record);
+  json["cell"] = cell(record);
   json["program"] = {{"written", record.program_written}, {"note", record.program_note}};
   json["notes"] = record.notes;
   json["definitions"] = Json::object();

@@ -71,9 +71,53 @@ TEST(Cell, MessagesNameWhatWhereFoundNeeded) {
             "(cell.toml)");
   EXPECT_EQ(problem_of(kFrames + "[robot]\nzone = 1\n"),
             "unknown key robot.zone (cell.toml:4): next: did you mean robot.zone_mm?");
-  EXPECT_NE(problem_of(kFrames + "scan_reference = \"targets\"\n").find("is not in this version yet"),
-            std::string::npos);
   EXPECT_NE(problem_of(kFrames + "[tool]\nname = \"my tool\"\n").find("printable ASCII"), std::string::npos);
+}
+
+const std::string kTargets =
+    "id,kind,x,y,z,diameter_mm,sd_mm\nA,sphere,0,0,0,38.1,0.02\nB,sphere,400,0,50,38.1,0.02\n";
+
+/// What is wrong with a cell whose list of targets holds these rows.
+std::string problem_with_targets(const std::string& rows, const std::string& frames = "") {
+  const testing::TestFolder folder;
+  folder.write("targets.csv", kTargets + rows);
+  const CellRead read = parse_cell(folder.path() / "cell.toml",
+                                   "[frames]\nscan_reference = \"targets\"\nreferences = \"targets.csv\"\n"
+                                   "references_max_residual_mm = 0.3\n" +
+                                       frames);
+  if (!read.problems.empty()) return to_line(read.problems.front());
+  EXPECT_GE(read.cell.targets.size(), 3U);
+  EXPECT_EQ(read.cell.targets[1].place_mm, Eigen::Vector3d(400, 0, 50));
+  EXPECT_EQ(read.cell.targets_max_residual_mm, 0.3);
+  return "";
+}
+
+TEST(Cell, TargetsTakeThePlaceOfTheScannersFrame) {
+  const auto expect = [](const std::string& problem, const std::string& part) {
+    EXPECT_NE(problem.find(part), std::string::npos) << problem;
+  };
+  EXPECT_EQ(problem_with_targets("C,sphere,100,300,20,38.1,0.02\n"), "");
+  expect(problem_of("[frames]\nscan_reference = \"targets\"\n"), "frames.references is missing");
+  expect(problem_of("[frames]\nscan_reference = \"targets\"\nreferences = \"nowhere.csv\"\n"), "nowhere.csv");
+  expect(problem_with_targets(""), "the wrong number of fixture targets");
+  expect(problem_with_targets("C,sphere,800,0,100,38.1,0.02\n"), "nearly on a line");
+  expect(problem_with_targets("C,sphere,200,300,25,38.1,0.02\n"), "A for B");
+  expect(problem_with_targets("C,sphere,1,1,1,38.1,0.02\n"), "only 1.732 mm apart");
+  expect(problem_with_targets("C,sphere,100,300,20,38.1,0.02\n",
+                              "robot_from_scan = { xyz_mm = [0, 0, 0], quat_wxyz = [1, 0, 0, 0] }\n"),
+         "given beside the targets");
+}
+
+TEST(Cell, OfTargetsPrintsAsItIsRead) {
+  const testing::TestFolder folder;
+  folder.write("targets.csv", kTargets + "C,point,100,300,20,,0.02\n");
+  const CellRead read = parse_cell(folder.path() / "cell.toml",
+                                   "[frames]\nscan_reference = \"targets\"\nreferences = \"targets.csv\"\n");
+  ASSERT_TRUE(read.problems.empty());
+  const std::string text = print_cell(read.file, folder.path());
+  const CellRead again = parse_cell(folder.path() / "again.toml", text);
+  ASSERT_TRUE(again.problems.empty()) << to_line(again.problems.front()) << text;
+  EXPECT_EQ(again.cell.targets.size(), 3U);
 }
 
 TEST(Cell, FixturesAreGood) {

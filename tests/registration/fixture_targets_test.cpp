@@ -66,9 +66,9 @@ TargetScanOptions exact() {
 double error_mm(const TargetFrame& frame, const Scene& scene, const std::vector<FixtureTarget>& list) {
   double most_mm = 0.0;
   for (const FixtureTarget& target : list)
-    most_mm = std::max(most_mm, (frame.robot_from_scan * (scene.scan_from_robot * target.place_mm) -
-                                 target.place_mm)
-                                    .norm());
+    most_mm = std::max(
+        most_mm,
+        (frame.robot_from_scan * (scene.scan_from_robot * target.place_mm) - target.place_mm).norm());
   return most_mm;
 }
 
@@ -102,8 +102,7 @@ TEST(FixtureTargets, MovingTheScanMovesTheFrameByTheInverse) {
   for (Vector3d& p : moved.points_mm) p = moved_from_scan * p;
   const TargetFrame again = moved.solve(list);
   ASSERT_TRUE(again.usable());
-  EXPECT_LT((again.robot_from_scan.matrix() -
-             (frame.robot_from_scan * moved_from_scan.inverse()).matrix())
+  EXPECT_LT((again.robot_from_scan.matrix() - (frame.robot_from_scan * moved_from_scan.inverse()).matrix())
                 .cwiseAbs()
                 .maxCoeff(),
             1e-6);
@@ -306,12 +305,13 @@ TEST(FixtureTargets, TheirPointsAreThoseOnTheSpheresFound) {
   Scene scene = scene_of(list, TargetScanOptions(), random);
   const std::size_t on = scene.points_mm.size();
   add_surroundings(scene, random);
-  const TargetFrame frame = scene.solve(list);
+  const TargetFrame frame = scene.solve(list, {.clear_mm = 0.0});
   ASSERT_TRUE(frame.usable());
   std::size_t theirs = 0;
   for (const std::int32_t i : frame.points) theirs += static_cast<std::size_t>(i) < on;
   EXPECT_EQ(theirs, on);
   EXPECT_LE(frame.points.size(), on + 10);  // a stray or two inside
+  EXPECT_GT(scene.solve(list, {.clear_mm = 60.0}).points.size(), frame.points.size() + 10);
 }
 
 }  // namespace

@@ -38,6 +38,9 @@ void check_motion(const char* field, const RigidMotion& motion) {
 
 void Cell::check() const {
   check_motion("robot_from_scan", robot_from_scan);
+  need(targets_max_residual_mm > 0.0, "targets_max_residual_mm", targets_max_residual_mm, "> 0");
+  need(targets_clear_mm >= 0.0, "targets_clear_mm", targets_clear_mm, ">= 0");
+  need(scan_points_sd_mm > 0.0, "scan_points_sd_mm", scan_points_sd_mm, "> 0");
   check_motion("robot_from_work", robot_from_work);
   check_motion("flange_from_tool", flange_from_tool);
   for (const auto& [field, name] : {std::pair{"tool_name", tool_name},

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <string>
+#include <vector>
 
+#include "acquisition/types/fixture_target.hpp"
 #include "acquisition/types/frames.hpp"
 
 namespace arris {
@@ -12,7 +15,13 @@ namespace arris {
 struct Cell {
   // [frames]
   RigidMotion robot_from_scan =
-      RigidMotion::Identity();  ///< takes scan coordinates (those of the file) to the robot's base
+      RigidMotion::Identity();           ///< takes scan coordinates (those of the file) to the robot's base
+  std::vector<FixtureTarget> targets;    ///< robot's base frame; not empty: robot_from_scan is solved from
+                                         ///< them in each scan, and the one above is not used
+  std::filesystem::path targets_file;    ///< where they were read from
+  double targets_max_residual_mm = 0.2;  ///< a target that fits worse is refused; > 0
+  double targets_clear_mm = 25.0;        ///< scan points this near to a sphere belong to its mount; >= 0
+  double scan_points_sd_mm = 0.05;       ///< of a scanned point target whose file states none; > 0
   RigidMotion robot_from_work = RigidMotion::Identity();  ///< frame in which the program states its poses
   // [tool]
   std::string tool_name = "tSpindle";  ///< tool data in the program
