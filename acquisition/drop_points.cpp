@@ -11,8 +11,8 @@ ThinnedScan drop_points(const Scan& scan, std::span<const std::int32_t> dropped)
   std::vector<std::int32_t> now(scan.cloud.size(), 0);  // new index of each point, -1: dropped
   for (const std::int32_t i : dropped) {
     if (i < 0 || static_cast<std::size_t>(i) >= now.size())
-      throw Error(Fault::kBug, "drop_points: point " + std::to_string(i) + " of " +
-                                   std::to_string(now.size()));
+      throw Error(Fault::kBug,
+                  "drop_points: point " + std::to_string(i) + " of " + std::to_string(now.size()));
     now[static_cast<std::size_t>(i)] = -1;
   }
   ThinnedScan thinned{scan, {}};

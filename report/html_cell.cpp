@@ -71,17 +71,19 @@ std::string cell_section(const RunRecord& record) {
   const TargetFrame& frame = *record.frame;
   std::string html = tag("h2", "Cell: the scanner's frame from fixture targets");
   if (frame.usable()) {
-    html += tag("p", "The places of the targets in the scan, carried to the robot's base, against the list. "
-                     "The residual is the distance that is left.");
+    html += tag("p",
+                "The places of the targets in the scan, carried to the robot's base, against the list. "
+                "The residual is the distance that is left.");
   } else {
     std::string items;
     for (const std::string& reason : frame.reasons) items += tag("li", escaped(reason));
-    html += tag("div",
-                tag("strong", record.has_toolpath ? "The scanner's frame is not known. No program was written."
-                                                  : "The scanner's frame is not known.") +
-                    tag("ul", items),
-                "reasons") +
-            "\n";
+    html +=
+        tag("div",
+            tag("strong", record.has_toolpath ? "The scanner's frame is not known. No program was written."
+                                              : "The scanner's frame is not known.") +
+                tag("ul", items),
+            "reasons") +
+        "\n";
   }
   html += targets_table(record);
   if (frame.extra > 0)

@@ -21,8 +21,8 @@ std::string fault_of(const std::string& text) {
 }
 
 TEST(TargetFile, ReadsSpheresAndPoints) {
-  const auto targets =
-      read_fixture_targets_csv("# fixture 7\n" + kHeader + kRows + "\nC, point, -1.5e2, 300, 40,, 0\r\n", "t");
+  const auto targets = read_fixture_targets_csv(
+      "# fixture 7\n" + kHeader + kRows + "\nC, point, -1.5e2, 300, 40,, 0\r\n", "t");
   ASSERT_EQ(targets.size(), 3U);
   EXPECT_EQ(targets[0].id, "A");
   EXPECT_EQ(targets[0].kind, TargetKind::kSphere);

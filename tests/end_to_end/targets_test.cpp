@@ -86,7 +86,8 @@ TEST_F(HandScanner, ProgramStaysWhereverTheScannerStood) {
   ASSERT_EQ(sd_first.size() + 3, first.size());  // clearance, the start again, clearance
   double worst_mm = 0.0;
   for (std::size_t row = 0; row < sd_first.size(); ++row) {
-    const double sd_mm = std::hypot(sd_first[row]["frame"].get<double>(), sd_second[row]["frame"].get<double>());
+    const double sd_mm =
+        std::hypot(sd_first[row]["frame"].get<double>(), sd_second[row]["frame"].get<double>());
     const double apart_mm = (first[row + 1] - second[row + 1]).norm();
     ASSERT_LT(apart_mm, 4.0 * sd_mm) << "row " << row;
     worst_mm = std::max(worst_mm, apart_mm);
@@ -100,7 +101,8 @@ TEST_F(HandScanner, FrameIsTheTrueOneWithinWhatIsStated) {
   const Json cell = result("out")["cell"];
   RigidMotion found = RigidMotion::Identity();
   for (int row = 0; row < 3; ++row)
-    for (int col = 0; col < 4; ++col) found.matrix()(row, col) = cell["robot_from_scan"][row][col].get<double>();
+    for (int col = 0; col < 4; ++col)
+      found.matrix()(row, col) = cell["robot_from_scan"][row][col].get<double>();
   const RigidMotion off = found * kFirst * robot_from_cad.inverse();  // robot from robot
   Eigen::Matrix<double, 6, 6> covariance;
   for (int i = 0; i < 36; ++i) covariance(i / 6, i % 6) = cell["covariance_6x6"][i].get<double>();

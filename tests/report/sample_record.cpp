@@ -237,6 +237,37 @@ RunRecord refused_record() {
   return record;
 }
 
+RunRecord targets_record(bool refused) {
+  RunRecord record = sample_record();
+  record.frame_max_residual_mm = 0.2;
+  TargetFrame frame;
+  for (const char* id : {"A", "B <1>", "C", "D"}) {
+    TargetSighting sighting;
+    sighting.target = {id, TargetKind::kSphere, Eigen::Vector3d(1200.0, 300.0, 80.0), 38.1, 0.02};
+    sighting.found = std::string(id) != "D";
+    sighting.residual_mm = 0.031;
+    sighting.sd_mm = 0.004;
+    sighting.points = 1234;
+    sighting.scan_mm = Eigen::Vector3d(4.0, 5.0, 6.0);
+    frame.targets.push_back(sighting);
+  }
+  frame.robot_from_scan.translation() = Eigen::Vector3d(850.0, 0.0, 400.0);
+  frame.covariance.diagonal() << 1e-10, 4e-10, 9e-10, 1e-4, 4e-4, 9e-4;
+  frame.pivot_mm = Eigen::Vector3d(1100.0, 200.0, 50.0);
+  frame.extra = 2;
+  if (refused) {
+    frame.targets[1].residual_mm = 0.74;
+    frame.targets[1].over_limit = true;
+    frame.reasons = {"fixture target B <1> is 1.02 mm from its place as the others show it (at most 0.20)"};
+    record.program_written = false;
+    record.program_note = "no robot program was written: " + frame.reasons.front();
+  } else {
+    record.robot_sd.assign(record.correction.points.size(), {0.021, 0.052, std::nan(""), 0.013});
+  }
+  record.frame = frame;
+  return record;
+}
+
 RunRecord barely_started_record() {
   RunRecord record = header();
   add_scan(record);

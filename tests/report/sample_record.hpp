@@ -12,6 +12,9 @@ namespace arris::test {
 /// The same, refused: a path over its limit, no program.
 [[nodiscard]] RunRecord refused_record();
 
+/// The first with a cell of four fixture targets: one of them not found; refused: one of them over its limit.
+[[nodiscard]] RunRecord targets_record(bool refused);
+
 /// A refusal before anything was aligned: a scan, no deviations, no path.
 [[nodiscard]] RunRecord barely_started_record();
 
