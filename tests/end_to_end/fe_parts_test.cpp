@@ -129,12 +129,16 @@ INSTANTIATE_TEST_SUITE_P(Three, FeParts,
 TEST(FePartsVplus, ProgramsAgreeWithTheCorrectedPathThroughTheCellsFrames) {
   const Job job("fe/porthole");
   job.replace("recipe.toml", "controller = \"rapid\"", "controller = \"vplus\"");
+  job.put_scan("scan.ply", testing::fe_scan("porthole", testing::usual_options("porthole"), 21));
+  const Ran by_name = job.run("scan.ply", "out");  // the lines of the part's own cell are RAPID's
+  EXPECT_EQ(by_name.code, 3);
+  EXPECT_NE(by_name.err.find("need for V+ the number of a digital signal"), std::string::npos) << by_name.err;
+  EXPECT_FALSE(job.names().contains("out"));
   job.put("cell.toml",
           "[frames]\n"
           "robot_from_scan = { xyz_mm = [850.0, -20.0, 400.0], quat_wxyz = [0.8, 0.0, 0.6, 0.0] }\n"
           "robot_from_work = { xyz_mm = [800.0, 10.0, 390.0], quat_wxyz = [0.6, 0.0, 0.0, 0.8] }\n"
           "[robot]\nspindle_output = \"97\"\nspindle_ready = \"1097\"\nmax_points = 100\n");
-  job.put_scan("scan.ply", testing::fe_scan("porthole", testing::usual_options("porthole"), 21));
   const Ran ran = job.run("scan.ply", "out");
   ASSERT_TRUE(ran.code == 0 || ran.code == 4 || ran.code == 7) << ran.code << ran.err;
   ASSERT_FALSE(job.names("out").contains("program.mod"));

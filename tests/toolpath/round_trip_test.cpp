@@ -102,6 +102,7 @@ Caught caught(const Dialect& dialect, const Program& meant, const std::string& t
     return differences(meant, read, toy_hash).empty() ? Caught::kNot : Caught::kByHash;
   } catch (const Error& error) {
     EXPECT_EQ(error.fault(), Fault::kInput) << error.what();
+    EXPECT_EQ(std::string_view(error.what()).find('\n'), std::string_view::npos) << error.what();
     return Caught::kByGrammar;
   }
 }
@@ -168,6 +169,19 @@ TEST_P(RoundTrip, TheSameBytesEveryTime) {
 
 INSTANTIATE_TEST_SUITE_P(Languages, RoundTrip, testing::ValuesIn(dialects()),
                          [](const auto& one) { return std::string(one.param.word); });
+
+TEST(Dialects, ACellIsCheckedBeforeThereIsAPath) {
+  for (const Dialect& dialect : dialects()) {
+    EXPECT_NO_THROW(check_cell(dialect, test::some_cell(dialect.word)));
+    Cell reserved = test::some_cell(dialect.word);
+    reserved.tool_name = "then";
+    EXPECT_THROW(check_cell(dialect, reserved), Error) << dialect.word;
+  }
+  EXPECT_THROW(check_cell(dialect_from_name("vplus"), test::some_cell("rapid")), Error);  // lines by name
+  Cell long_name = test::some_cell("vplus");
+  long_name.program_name = "ArrisPortholeA";  // its trap would be cut to another name
+  EXPECT_THROW(check_cell(dialect_from_name("vplus"), long_name), Error);
+}
 
 TEST(Dialects, AnUnknownWordIsRefused) {
   EXPECT_THROW((void)dialect_from_name("basic"), Error);

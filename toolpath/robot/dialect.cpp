@@ -23,4 +23,15 @@ const Dialect& dialect_from_name(const std::string& word) {
   throw Error(Fault::kRecipe, "robot.controller = \"" + word + "\", need " + known);
 }
 
+void check_cell(const Dialect& dialect, const Cell& cell) {
+  for (const bool dry_run : {false, true}) {
+    Program program;
+    program.cell = cell;
+    program.name = name_of_program(cell, dry_run);
+    if (!dry_run && !cell.spindle_output.empty())
+      program.events.emplace_back(SetOutput{cell.spindle_output, false});
+    (void)dialect.write(program, [](std::string_view) { return std::string(); });
+  }
+}
+
 }  // namespace arris

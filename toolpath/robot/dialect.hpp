@@ -25,4 +25,8 @@ struct Dialect {
 /// By its word; throws Error(kRecipe) for any other.
 [[nodiscard]] const Dialect& dialect_from_name(const std::string& word);
 
+/// Throws Error(kRecipe) for a cell whose names and lines this language cannot write, before there is a path:
+/// programs without a move are written, with the tool's output switched off, and thrown away.
+void check_cell(const Dialect& dialect, const Cell& cell);
+
 }  // namespace arris

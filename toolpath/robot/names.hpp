@@ -14,8 +14,8 @@ struct NameRules {
   std::string_view signs;  ///< beside letters and digits, not in front
   const char* in_words;    ///< "letters, digits and underscores"
   std::size_t longest;
-  std::set<std::string> reserved;        ///< in lower case
-  std::vector<std::string> numbered;     ///< stems of the names that the writer makes: stem1, stem2, ...
+  std::set<std::string> reserved;         ///< in lower case
+  std::vector<std::string> numbered;      ///< stems of the names that the writer makes: stem1, stem2, ...
   std::set<std::string> predefined = {};  ///< reserved names that the controller has already
 };
 

@@ -129,6 +129,10 @@ class Maker {
 
 }  // namespace
 
+std::string name_of_program(const Cell& cell, bool dry_run) {
+  return cell.program_name + (dry_run ? "Dry" : "");
+}
+
 Program make_program(const Correction& correction, const Vector3d& offset_mm, const Cell& cell,
                      const ProgramOptions& options) {
   cell.check();
@@ -136,7 +140,7 @@ Program make_program(const Correction& correction, const Vector3d& offset_mm, co
     throw Error(Fault::kBug, "a robot program asked for a correction that is refused");
   Program program;
   program.cell = cell;
-  program.name = cell.program_name + (options.dry_run ? "Dry" : "");
+  program.name = name_of_program(cell, options.dry_run);
   program.result_hash = options.result_hash;
   program.comments = options.comments;
   program.dry_run = options.dry_run;

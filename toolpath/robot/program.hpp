@@ -37,12 +37,15 @@ using Event = std::variant<Move, SetOutput, WaitInput>;
 /// A robot program before it has a language: what happens, in order.
 struct Program {
   Cell cell;         ///< frames, tool and names that a dialect writes down
-  std::string name;  ///< cell.program_name, with "Dry" for the twin
+  std::string name;  ///< name_of_program()
   std::string result_hash;
   std::vector<std::string> comments;  ///< for the head of the file
   bool dry_run = false;
   std::vector<Event> events;
 };
+
+/// cell.program_name, with "Dry" for the twin.
+[[nodiscard]] std::string name_of_program(const Cell& cell, bool dry_run);
 
 /// Options of make_program.
 struct ProgramOptions {

@@ -44,6 +44,8 @@ std::vector<string> switched_outputs(const Program& program) {
   return outputs;
 }
 
-bool switches_outputs(const Program& program) { return !switched_outputs(program).empty(); }
+bool switches_outputs(const Program& program) {
+  return !switched_outputs(program).empty();
+}
 
 }  // namespace arris

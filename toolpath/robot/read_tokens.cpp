@@ -131,7 +131,8 @@ class Tokeniser {
       }
     }
     if (letter(ahead()) || ahead() == '.' || ahead() == '_' || at_ - begin > 24)
-      refuse(source_, line_, "'" + std::string(text_.substr(begin, at_ - begin + 1)) + "'",
+      refuse(source_, line_,
+             "'" + std::string(text_.substr(begin, at_ - begin + (ahead() > ' ' ? 1 : 0))) + "'",
              "a number without exponent");
     push(TokenKind::kNumber, std::string(text_.substr(begin, at_ - begin))).number = value / unit;
   }

@@ -35,7 +35,9 @@ ReadPose backed(ReadPose pose, double away_mm) {
   return pose;
 }
 
-string written(int number) { return std::to_string(number); }
+string written(int number) {
+  return std::to_string(number);
+}
 
 class Runner {
  public:
@@ -157,8 +159,9 @@ class Runner {
     if (now.literal)
       globals_[now.name.key] = {now.name.written, pose_of(now.trans)};
     else
-      taught_[now.name.key] = {now.name.written, {now.points[0].written, now.points[1].written,
-                                                  now.points[2].written, now.points[3].written}};
+      taught_[now.name.key] = {
+          now.name.written,
+          {now.points[0].written, now.points[1].written, now.points[2].written, now.points[3].written}};
   }
 
   void tool(const Statement& now) {
@@ -294,6 +297,8 @@ class Runner {
 
 }  // namespace
 
-Reading read_vplus(std::string_view text, const string& source) { return Runner(text, source).run(); }
+Reading read_vplus(std::string_view text, const string& source) {
+  return Runner(text, source).run();
+}
 
 }  // namespace arris

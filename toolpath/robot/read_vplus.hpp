@@ -7,9 +7,9 @@
 
 namespace arris {
 
-/// Reads a file of V+ programs of moves and I/O, and runs it on paper: what the controller would do, in order.
-/// Shares no code with the writer. Words of the language and names know no case. A statement a line; comments
-/// from `;` to its end; blank lines anywhere.
+/// Reads a file of V+ programs of moves and I/O, and runs it on paper: what the controller would do, in
+/// order. Shares no code with the writer. Words of the language and names know no case. A statement a line;
+/// comments from `;` to its end; blank lines anywhere.
 ///
 ///     file        = program { program }
 ///     program     = .PROGRAM name "()" { AUTO LOC name } { statement } .END
@@ -28,10 +28,10 @@ namespace arris {
 ///   returns  the moves, signals and waits in the order of execution, calls followed, locations resolved;
 ///            signals are named by their numbers; a move that a BREAK follows has zone 0, any other none
 ///   throws   Error(kInput) with line and reason: a text outside the grammar; a line of more than 128
-///            characters; a name of more than 15, or declared twice; a location that the program does not set;
-///            a move without SPEED before; a SIGNAL, a wait, DETACH, HALT or the end while the robot moves; a
-///            wait with a time whose TIMER is not set to 0 before, or that is not looked at behind; a frame
-///            or tool that changes; a program that calls itself or is never called
+///            characters; a name of more than 15, or declared twice; a location that the program does not
+///            set; a move without SPEED before; a SIGNAL, a wait, DETACH, HALT or the end while the robot
+///            moves; a wait with a time whose TIMER is not set to 0 before, or that is not looked at behind;
+///            a frame or tool that changes; a program that calls itself or is never called
 [[nodiscard]] Reading read_vplus(std::string_view text, const std::string& source);
 
 }  // namespace arris

@@ -11,10 +11,10 @@ namespace {
 using namespace program_reader;  // NOLINT: tokens and cursor
 
 const std::set<std::string> kWords = {
-    ".program", ".end",  "auto",   "loc",    "select", "robot",  "attach", "detach", "reacte", "set",
-    "trans",    "frame", "tool",   "cpon",   "always", "speed",  "mmps",   "move",   "moves",  "appro",
-    "appros",   "depart", "departs", "break", "signal", "timer", "wait",   "sig",    "or",     "if",
-    "not",      "then",  "end",    "type",   "halt",   "call"};
+    ".program", ".end",  "auto",   "loc",    "select",  "robot",  "attach", "detach", "reacte",
+    "set",      "trans", "frame",  "tool",   "cpon",    "always", "speed",  "mmps",   "move",
+    "moves",    "appro", "appros", "depart", "departs", "break",  "signal", "timer",  "wait",
+    "sig",      "or",    "if",     "not",    "then",    "end",    "type",   "halt",   "call"};
 
 const Language kLanguage = {.name = kVplus,
                             .comment = ';',

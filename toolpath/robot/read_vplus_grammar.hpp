@@ -37,19 +37,19 @@ enum class StatementKind {
 struct Statement {
   StatementKind kind = StatementKind::kBreak;
   int line = 0;
-  Name name;                       ///< kAuto, kSet, kTool, kTrap, kCall; kMove: the frame, may be empty
-  Name point;                      ///< kMove: of a named location; empty with a literal one
-  bool literal = false;            ///< kSet, kMove: `trans` counts, else kSet goes by `points`
-  std::array<double, 6> trans{};   ///< x, y, z, yaw, pitch, roll: mm and degrees
-  std::array<Name, 4> points;      ///< kSet: FRAME(a, b, c, d)
-  bool joint = false;              ///< kMove, kDepart: not along a straight line
-  bool on = true;                  ///< kAttach: not DETACH; kSignal, kWait, kIf: the signal, else its opposite
-  double away_mm = 0.0;            ///< kMove: back along the tool's z (APPRO); kDepart
+  Name name;                      ///< kAuto, kSet, kTool, kTrap, kCall; kMove: the frame, may be empty
+  Name point;                     ///< kMove: of a named location; empty with a literal one
+  bool literal = false;           ///< kSet, kMove: `trans` counts, else kSet goes by `points`
+  std::array<double, 6> trans{};  ///< x, y, z, yaw, pitch, roll: mm and degrees
+  std::array<Name, 4> points;     ///< kSet: FRAME(a, b, c, d)
+  bool joint = false;             ///< kMove, kDepart: not along a straight line
+  bool on = true;                 ///< kAttach: not DETACH; kSignal, kWait, kIf: the signal, else its opposite
+  double away_mm = 0.0;           ///< kMove: back along the tool's z (APPRO); kDepart
   double speed_mm_s = 0.0, turn_percent = 0.0;  ///< kSpeed; 0: not said
-  int number = 0;                  ///< kSelect, kSignal, kWait, kIf: which
-  int timer = 0;                   ///< kTimer, kWait; 0: waits for ever
-  double timeout_s = 0.0;          ///< kWait
-  std::vector<Statement> body;     ///< kIf
+  int number = 0;                               ///< kSelect, kSignal, kWait, kIf: which
+  int timer = 0;                                ///< kTimer, kWait; 0: waits for ever
+  double timeout_s = 0.0;                       ///< kWait
+  std::vector<Statement> body;                  ///< kIf
 };
 
 struct Routine {

@@ -119,7 +119,8 @@ class Writer {
     if (!switches_outputs(program_)) return text;
     text += ".PROGRAM " + trap_name() + "()\n";
     for (const string& output : switched_outputs(program_)) text += kIndent + "SIGNAL -" + output + "\n";
-    return text + kIndent + "TYPE \"Arris: an error, the tool is switched off.\"\n" + kIndent + "HALT\n.END\n";
+    return text + kIndent + "TYPE \"Arris: an error, the tool is switched off.\"\n" + kIndent +
+           "HALT\n.END\n";
   }
 
   [[nodiscard]] string part_name(std::size_t i) const {

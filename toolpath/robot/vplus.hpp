@@ -12,7 +12,8 @@ namespace arris {
 /// its error trap.
 ///   head        comments under the first .PROGRAM: what was given, result_hash, body_sha256 (sha256_hex of
 ///               the whole text without the digits of body_sha256 itself)
-///   poses       SET p = TRANS(x, y, z, yaw, pitch, roll), then MOVE or MOVES work:p, one point after another;
+///   poses       SET p = TRANS(x, y, z, yaw, pitch, roll), then MOVE or MOVES work:p, one point after
+///   another;
 ///               mm and degrees 4 decimals, fixed notation, no -0; no line longer than 120 characters
 ///   frames      tool and work by SET .. = TRANS(..), or FRAME(a, b, c, a) of points that are taught on the
 ///               controller (cell.work_points), or as the controller has them
