@@ -186,7 +186,7 @@ int run_main_job(const RunArgs& args) {
   journal.stage("reading the recipe and the drawing");
   const Recipe recipe = read_recipe(args.recipe);
   std::optional<Cell> cell = read_cell_for(args, recipe);
-  if (cell) check_cell(dialect_from_name(recipe.robot.controller), *cell);
+  if (cell && !args.inspect_only) check_cell(dialect_from_name(recipe.robot.controller), *cell);
   AtomicFolder folder(args.out.value_or(default_out(args.scan)), args.force, kMark);
   const Drawing drawing = read_drawing(recipe, !args.inspect_only, args.threads);
 
