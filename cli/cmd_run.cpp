@@ -18,11 +18,11 @@
 #include "cli/contours_file.hpp"
 #include "cli/pipeline.hpp"
 #include "cli/run_folder.hpp"
+#include "cli/run_inputs.hpp"
 #include "cli/run_summary.hpp"
 #include "report/result_hash.hpp"
 #include "report/run_log.hpp"
 #include "report/verdict.hpp"
-#include "toolpath/robot/dialect.hpp"
 
 namespace arris {
 namespace {
@@ -101,26 +101,6 @@ class Journal {
   int step_ = 0;
 };
 
-std::optional<fs::path> cell_file(const RunArgs& args, const Recipe& recipe) {
-  if (args.cell) return args.cell;
-  if (!recipe.cell.empty()) return recipe.cell;
-  return std::nullopt;
-}
-
-/// The cell as far as this run needs it: an inspection looks for its targets, to leave them out.
-std::optional<Cell> read_cell_for(const RunArgs& args, const Recipe& recipe) {
-  const std::optional<fs::path> file = cell_file(args, recipe);
-  std::optional<Cell> cell;
-  if (file) cell = read_cell(*file);
-  if (args.inspect_only && cell && cell->targets.empty()) cell.reset();
-  if (args.targets && (!cell || cell->targets.empty()))
-    throw Error(Fault::kInput, {.what = "--targets is given, and the cell has no fixture targets",
-                                .where = file ? file->string() : "no cell",
-                                .needed = "a cell with scan_reference = \"targets\"",
-                                .next = "leave --targets out, or give that cell with --cell"});
-  return cell;
-}
-
 std::optional<TargetSearch> target_search(const RunArgs& args, const Recipe& recipe,
                                           const std::optional<Cell>& cell) {
   if (!cell || cell->targets.empty()) return std::nullopt;
@@ -130,26 +110,6 @@ std::optional<TargetSearch> target_search(const RunArgs& args, const Recipe& rec
   search.options = {cell->targets_max_residual_mm, cell->scan_points_sd_mm, cell->targets_clear_mm,
                     args.threads};
   return search;
-}
-
-std::vector<InputFile> hashed_inputs(const RunArgs& args, const Recipe& recipe,
-                                     const std::optional<Cell>& cell) {
-  std::vector<InputFile> inputs;
-  const auto add = [&](const char* role, const fs::path& file) {
-    if (!file.empty()) inputs.push_back({role, file.filename().string(), sha256_file(file)});
-  };
-  add("scan", args.scan);
-  add("cad", recipe.part.cad);
-  add("recipe", args.recipe);
-  if (!args.inspect_only) add("path", recipe.toolpath.file);
-  add("contour", recipe.contour.file);
-  if (cell) {
-    add("cell", *cell_file(args, recipe));
-    add("references", cell->targets_file);
-  }
-  if (args.targets) add("targets", *args.targets);
-  if (args.contours) add("contours", *args.contours);
-  return inputs;
 }
 
 std::optional<ContourChoice> operators_choice(const RunArgs& args, const Recipe& recipe) {
@@ -186,7 +146,6 @@ int run_main_job(const RunArgs& args) {
   journal.stage("reading the recipe and the drawing");
   const Recipe recipe = read_recipe(args.recipe);
   std::optional<Cell> cell = read_cell_for(args, recipe);
-  if (cell && !args.inspect_only) check_cell(dialect_from_name(recipe.robot.controller), *cell);
   AtomicFolder folder(args.out.value_or(default_out(args.scan)), args.force, kMark);
   const Drawing drawing = read_drawing(recipe, !args.inspect_only, args.threads);
 

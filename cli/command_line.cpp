@@ -62,6 +62,36 @@ void add_run(CLI::App& app, const Common& common, Chosen& chosen, bool inspect) 
   });
 }
 
+void add_batch(CLI::App& app, const Common& common, Chosen& chosen) {
+  const auto args = std::make_shared<BatchArgs>();
+  CLI::App* command =
+      add_command(app, "batch", "Run many stored scans with one recipe; resumes where it was stopped",
+                  "arris batch bracket.toml scans/ --out may --jobs 4\n"
+                  "  arris batch bracket.toml part7.ply part8.ply\n"
+                  "  arris batch bracket.toml @list.txt --inspect");
+  command->add_option("RECIPE", args->recipe, "recipe of the part number")->required()->option_text(" ");
+  command
+      ->add_option("SCAN", args->scans, "scan files, folders of scans, or @FILE: a list with a path a line")
+      ->required()
+      ->option_text("...");
+  command
+      ->add_option("--out", args->out,
+                   "folder of the batch, a run folder a scan in it; <recipe>.batch unless given")
+      ->option_text("DIR");
+  command->add_option("--jobs", args->jobs, "scans at a time; 0: one a core")
+      ->check(CLI::Range(0, 1024))
+      ->option_text("N");
+  command->add_option("--cell", args->cell, "station file; replaces the one the recipe names")
+      ->option_text("FILE");
+  command->add_flag("--inspect", args->inspect_only, "shape and contours alone, no tool path");
+  command->add_flag("--force", args->force, "run all scans again, those that are complete too");
+  command->callback([args, &common, &chosen] {
+    args->json = common.json;
+    args->threads = common.threads;
+    chosen = [args] { return run_batch(*args); };
+  });
+}
+
 void add_contours(CLI::App& app, const Common& common, Chosen& chosen) {
   const auto args = std::make_shared<ContoursArgs>();
   CLI::App* command =
@@ -234,6 +264,7 @@ int run_command_line(int argc, const char* const* argv) {
       "Example:\n  arris run bracket.toml --scan part7.ply --out part7\n\narris COMMAND --help says more.");
   add_run(app, common, chosen, false);
   add_run(app, common, chosen, true);
+  add_batch(app, common, chosen);
   add_contours(app, common, chosen);
   add_info(app, common, chosen);
   add_recipe(app, common, chosen);

@@ -57,4 +57,18 @@ struct DemoArgs {
 };
 [[nodiscard]] int run_demo(const DemoArgs& args);
 
+/// `arris batch`: many scans with one recipe, each in a process of its own.
+struct BatchArgs {
+  std::filesystem::path recipe;
+  std::vector<std::string> scans;                  ///< files, folders, @list.txt
+  std::optional<std::filesystem::path> out, cell;  ///< none: <recipe stem>.batch; the recipe's
+  bool inspect_only = false;
+  bool force = false;  ///< run again what is complete
+  bool json = false;
+  int jobs = 0;     ///< processes at a time; 0: one a core
+  int threads = 0;  ///< of each process; 0: one
+};
+/// Returns the worst exit code of its scans; throws Error(kInput) for what keeps all of them from running.
+[[nodiscard]] int run_batch(const BatchArgs& args);
+
 }  // namespace arris

@@ -1,5 +1,6 @@
 #include "cli/console.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -29,6 +30,20 @@ void write_error(const std::string& line) {
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
+/// Columns of the terminal on stderr; 80 when it does not say.
+std::size_t terminal_columns() {
+  winsize size = {};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : 80;
+}
+
+/// At most `columns` characters of UTF-8: a line that wraps could not be wiped.
+std::string clipped(const std::string& line, std::size_t columns) {
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < line.size(); ++i)
+    if ((static_cast<unsigned char>(line[i]) & 0xC0) != 0x80 && ++seen > columns) return line.substr(0, i);
+  return line;
+}
+
 }  // namespace
 
 void print(std::string_view line) {
@@ -56,8 +71,12 @@ Progress::~Progress() {
 
 void Progress::stage(int step, int steps, std::string_view what) {
   stop_if_interrupted();
+  show(std::to_string(step) + "/" + std::to_string(steps) + " " + std::string(what));
+}
+
+void Progress::show(std::string_view text) {
   if (!shown_) return;
-  write_error("\r\033[K" + std::to_string(step) + "/" + std::to_string(steps) + " " + one_line(what));
+  write_error("\r\033[K" + clipped(one_line(text), terminal_columns() - 1));
   dirty_ = true;
 }
 

@@ -30,6 +30,8 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   /// "3/7 aligning".  Also the place where Ctrl-C is heard: throws Error(kInterrupted).
   void stage(int step, int steps, std::string_view what);
+  /// Any text in the place of the line before, cut at the terminal's width.
+  void show(std::string_view text);
 
  private:
   bool shown_ = false;

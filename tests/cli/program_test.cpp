@@ -21,7 +21,7 @@ void expect_one_line(const Ran& ran, const std::string& holds) {
 }
 
 TEST(Program, HelpOfEveryCommandHasAnExample) {
-  for (const char* command : {"", "run", "inspect", "contours", "info", "recipe", "recipe check",
+  for (const char* command : {"", "run", "inspect", "batch", "contours", "info", "recipe", "recipe check",
                               "recipe print", "recipe new", "demo"}) {
     const Ran ran = run_arris(std::string(command) + " --help");
     EXPECT_EQ(ran.code, 0) << command;
@@ -34,7 +34,7 @@ TEST(Program, HelpOfEveryCommandHasAnExample) {
 TEST(Program, ListsOnlyCommandsThatExist) {
   const std::string help = run_arris("--help").out;
   for (const char* later :
-       {"engrave", "post", "calibrate", "send", "station", "gpio", "batch", "archive", "trend", "study"})
+       {"engrave", "post", "calibrate", "send", "station", "gpio", "archive", "trend", "study"})
     EXPECT_EQ(help.find("  " + std::string(later) + " "), std::string::npos) << later;
 }
 
@@ -52,6 +52,8 @@ TEST(Program, UsageErrorsAreTwo) {
       {"run x.toml", "--scan is required"},
       {"run x.toml --scan a b", "does not take \"b\""},
       {"run --scan a", "RECIPE is required"},
+      {"batch x.toml", "SCAN is required"},
+      {"batch x.toml s.ply --jbs 2", "did you mean --jobs?"},
       {"contours x.stl --units km", "km"},
       {"contours x.stl --accept one", "--accept"},
       {"contours x.stl --out c.json", "--accept"},
@@ -71,9 +73,9 @@ TEST(Program, UsageErrorsAreTwo) {
 
 TEST(Program, MissingFilesAreThreeAndLeaveNothing) {
   const testing::TestFolder folder;
-  for (const char* line :
-       {"run none.toml --scan s.ply", "inspect none.toml --scan s.ply", "contours none.stl", "info none.ply",
-        "recipe check none.toml", "recipe print none.toml", "recipe new --cad none.stl"}) {
+  for (const char* line : {"run none.toml --scan s.ply", "inspect none.toml --scan s.ply",
+                           "batch none.toml s.ply", "contours none.stl", "info none.ply",
+                           "recipe check none.toml", "recipe print none.toml", "recipe new --cad none.stl"}) {
     const Ran ran = run_arris(line, folder.path());
     EXPECT_EQ(ran.code, 3) << line << ": " << ran.err;
     expect_one_line(ran, "none.");
