@@ -51,9 +51,9 @@ BatchFolder::~BatchFolder() {
 void BatchFolder::check_is_ours() const {
   std::error_code failed;
   if (fs::exists(folder_ / kLockName, failed) || fs::is_empty(folder_, failed)) return;
-  throw Error(Fault::kInput, {"the folder is no batch folder", folder_.string(), "other files in it",
-                              "a new folder, an empty one, or that of an earlier batch",
-                              "name another one with --out"});
+  throw Error(Fault::kInput,
+              {"the folder is no batch folder", folder_.string(), "other files in it",
+               "a new folder, an empty one, or that of an earlier batch", "name another one with --out"});
 }
 
 /// The lock is inherited by the children on purpose: it is free when the last one is dead.

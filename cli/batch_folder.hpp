@@ -11,7 +11,8 @@ namespace arris {
 class BatchFolder {
  public:
   /// Makes or takes the folder, and removes what killed processes left half-written in it.
-  ///   throws  Error(kInput): another batch holds it, it holds other things than a batch, it cannot be written
+  ///   throws  Error(kInput): another batch holds it, it holds other things than a batch, it cannot be
+  ///   written
   explicit BatchFolder(const std::filesystem::path& folder);
   ~BatchFolder();
   BatchFolder(const BatchFolder&) = delete;
@@ -20,8 +21,8 @@ class BatchFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
   [[nodiscard]] std::filesystem::path run_folder(const std::string& name) const { return folder_ / name; }
 
-  /// Removes what killed processes were writing of `name`; of all with "". Who holds the lock writes alone, so it
-  /// belongs to the dead.
+  /// Removes what killed processes were writing of `name`; of all with "". Who holds the lock writes alone,
+  /// so it belongs to the dead.
   void remove_leftovers(const std::string& name) const;
 
   /// Names in the folder that are not run folders.

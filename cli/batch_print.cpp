@@ -151,7 +151,8 @@ void print_batch(const BatchRecord& record) {
   print_figures(record);
   print_next(record);
   Section wrote("wrote");
-  wrote.line((record.folder / kSummaryName).string() + "   (" + report::fixed_text(record.total_s, 1) + " s)");
+  wrote.line((record.folder / kSummaryName).string() + "   (" + report::fixed_text(record.total_s, 1) +
+             " s)");
   wrote.line((record.folder / "<scan>" / "report.html").string());
 }
 

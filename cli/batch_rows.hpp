@@ -16,10 +16,10 @@ struct BatchRow {
   BatchScan scan;
   int exit_code = 0;                ///< of its run; a signal counts as 1
   std::optional<RunResult> result;  ///< of its run folder; none after 1, 3 and 6
-  std::string message;              ///< why it is not good, one line: the error, the signal, the first refusal
-  bool kept = false;                ///< complete from an earlier batch, not run now
-  std::string run_again_because;    ///< an earlier result was there and is of other inputs
-  double wall_s = 0.0;              ///< of the process; 0 when kept
+  std::string message;            ///< why it is not good, one line: the error, the signal, the first refusal
+  bool kept = false;              ///< complete from an earlier batch, not run now
+  std::string run_again_because;  ///< an earlier result was there and is of other inputs
+  double wall_s = 0.0;            ///< of the process; 0 when kept
 };
 
 /// What differs between a stored result and the files as they are now: "the recipe changed"; empty: nothing.

@@ -20,9 +20,8 @@ bool is_scan_name(const fs::path& file) {
   static const std::set<std::string> kEndings{".ply", ".pcd",  ".stl", ".off",
                                               ".xyz", ".xyzn", ".asc", ".pts"};
   std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   return kEndings.contains(ending) && !file.filename().string().starts_with(".");
 }
 

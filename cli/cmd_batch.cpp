@@ -188,11 +188,12 @@ class Batch {
   void refuse_full_disk(const std::string& message) const {
     for (const int code : {ENOSPC, EDQUOT})
       if (message.find(std::strerror(code)) != std::string::npos)
-        throw Error(Fault::kInput,
-                    {.what = "the batch stopped, for nothing more can be written",
-                     .where = folder_.path().string(),
-                     .found = std::string(std::strerror(code)) + ", " + done_words(),
-                     .next = "free space on the disk, then give the same command again: it goes on from here"});
+        throw Error(
+            Fault::kInput,
+            {.what = "the batch stopped, for nothing more can be written",
+             .where = folder_.path().string(),
+             .found = std::string(std::strerror(code)) + ", " + done_words(),
+             .next = "free space on the disk, then give the same command again: it goes on from here"});
   }
 
   [[noreturn]] void stop() {

@@ -53,7 +53,8 @@ RunResult result_of(const Json& json) {
   result.correction = verdicts.at("correction");
   result.inspection = verdicts.at("inspection");
   result.refusals = json.at("refusals").get<std::vector<std::string>>();
-  const char* judged = json.at("part").at("state") == "free" ? "ii_shape_as_scanned" : "iii_contour_pulled_back";
+  const char* judged =
+      json.at("part").at("state") == "free" ? "ii_shape_as_scanned" : "iii_contour_pulled_back";
   result.inspection_text = json.at("results").at(judged).at("judged").at("text");
   if (const std::size_t colon = result.inspection_text.rfind(": "); colon != std::string::npos)
     result.inspection_text.erase(0, colon + 2);  // what is judged stands before it, the reason behind

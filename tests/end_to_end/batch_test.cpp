@@ -39,7 +39,8 @@ class Batch : public ::testing::Test {
   [[nodiscard]] std::size_t count_now(const std::string& out, const std::string& word) const {
     std::istringstream text(text_of(job.file(out + "/times.csv")));
     std::size_t count = 0;
-    for (std::string line; std::getline(text, line);) count += line.find("," + word + ",") != std::string::npos;
+    for (std::string line; std::getline(text, line);)
+      count += line.find("," + word + ",") != std::string::npos;
     return count;
   }
   /// Nothing half-written: no hidden name but the lock.
@@ -56,7 +57,8 @@ TEST_F(Batch, OneBadScanNeverEndsTheRest) {
   const Ran ran = batch("out", "scans/missing.ply");
   EXPECT_EQ(ran.code, 3) << ran.out << ran.err;
   EXPECT_TRUE(ran.err.empty()) << "quiet in a pipe: " << ran.err;
-  EXPECT_EQ(job.names("out"), (std::set<std::string>{".arris-batch", "s1", "s2", "summary.csv", "times.csv"}));
+  EXPECT_EQ(job.names("out"),
+            (std::set<std::string>{".arris-batch", "s1", "s2", "summary.csv", "times.csv"}));
   std::istringstream text(summary("out"));
   std::vector<std::string> lines;
   for (std::string line; std::getline(text, line);) lines.push_back(line);
