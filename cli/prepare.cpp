@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 
+#include "acquisition/geometry/mesh_normals.hpp"
 #include "acquisition/geometry/orient.hpp"
 #include "acquisition/types/error.hpp"
 
@@ -82,6 +83,8 @@ PreparedScan prepare_scan(const Scan& scan, const PrepareOptions& options) {
 CadModel prepare_cad(const TriangleMesh& mesh, const std::vector<Contour>& accepted,
                      const std::vector<Contour>& others) {
   CadModel cad{SurfaceQuery(mesh), {}};
+  cad.mesh = mesh;
+  cad.vertex_normals = mesh_normals(mesh).vertex;
   for (const Contour& contour : accepted) cad.contours.emplace_back(contour);
   for (const Contour& contour : others) cad.others.emplace_back(contour);
   return cad;

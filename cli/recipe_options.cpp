@@ -75,12 +75,15 @@ ContourOptions contour_options(const Recipe& recipe, int threads) {
 RegistrationOptions registration_options(const Recipe& recipe, int threads) {
   const Recipe::Subdivision& s = recipe.registration.subdivision;
   RegistrationOptions options;
-  options.method =
-      recipe.registration.method == "rigid" ? RegistrationMethod::kRigid : RegistrationMethod::kSubdivision;
+  options.method = recipe.registration.method == "rigid"     ? RegistrationMethod::kRigid
+                   : recipe.registration.method == "surface" ? RegistrationMethod::kSurface
+                                                             : RegistrationMethod::kSubdivision;
   options.follow_edge = recipe.contour.role == "edge";
   options.min_seen_ratio = recipe.registration.min_seen_ratio;
   options.max_unseen_mm = recipe.registration.max_unseen_mm;
-  options.band_mm = options.coarse.band_mm = options.rigid.band_mm = s.band_mm;
+  options.band_mm = options.coarse.band_mm = options.rigid.band_mm = options.surface.band_mm = s.band_mm;
+  options.surface.role = options.follow_edge ? ContourRole::kEdge : ContourRole::kCut;
+  options.surface.prior.thickness_mm = recipe.part.thickness_mm.value_or(0.0);
   if (recipe.scan.initial.given) {
     options.coarse.initial_scan_from_cad =
         motion_from_numbers("scan.initial.scan_from_cad", recipe.scan.initial.scan_from_cad);
@@ -96,7 +99,7 @@ RegistrationOptions registration_options(const Recipe& recipe, int threads) {
   options.subdivision.max_iterations = s.max_iterations;
   options.subdivision.stop_change_ratio = s.stop_change_ratio;
   options.threads = options.coarse.threads = options.rigid.threads = options.subdivision.threads =
-      options.edge.threads = threads;
+      options.edge.threads = options.surface.threads = threads;
   return options;
 }
 

@@ -27,4 +27,19 @@ RigidMotion ContourMotion::at(double arc_mm) const {
   return blended;
 }
 
+ContourMotion sampled_motion(const Curve& nominal, double step_mm,
+                             const std::function<RigidMotion(double arc_mm)>& motion_at) {
+  SubdivisionOptions pieces;
+  pieces.segment_length_max_mm = step_mm;
+  pieces.corner_radius_max_mm = 0.0;  // a smooth field needs no cut at corners
+  pieces.overlap_ratio = 0.5;
+  Subdivision subdivision(nominal, pieces);
+  std::vector<SegmentFit> fits(subdivision.segments().size());
+  for (std::size_t z = 0; z < fits.size(); ++z) {
+    const Segment& segment = subdivision.segments()[z];
+    fits[z].scan_from_cad = motion_at(nominal.wrap_mm(0.5 * (segment.begin_mm + segment.end_mm)));
+  }
+  return {nominal, std::move(subdivision), std::move(fits)};
+}
+
 }  // namespace arris

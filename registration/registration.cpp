@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "registration/edge_pairs.hpp"
+#include "registration/surface_field.hpp"
 
 namespace arris {
 namespace {
@@ -13,6 +14,7 @@ constexpr double kSharpenedSigmaRatio = 0.1;  // scatter of the edge by support,
 constexpr int kSharpeningPasses = 2;
 constexpr double kRigidStartLooseness = 8.0;
 constexpr double kSampleMm = 2.0;
+constexpr double kSurfaceMotionMm = 10.0;  // the surface field along a contour is sampled this finely
 constexpr double kSeamMm = 2.5,
                  kSeamEdgeLimits = 3.0;  // how far segments may disagree: bending, and the edge limit
 constexpr double kResidualMm = 0.15, kResidualSigmas = 5.0;  // of the height beside the edge
@@ -206,8 +208,26 @@ void judge_coverage(const CadModel& cad, const RegistrationOptions& options, Reg
   }
 }
 
+/// The surface field, and the found edge relative to it: what is left is the part's own error.
+void deform_surface(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options,
+                    Registration& result) {
+  SurfaceFit fit = refine_surface(cad, scan, result.rigid.scan_from_cad, options.surface);
+  if (!fit.usable()) {
+    result.refusals.push_back(fit.reason);
+    return;
+  }
+  auto field = std::make_shared<SurfaceField>(cad, std::move(fit), options.band_mm, options.follow_edge);
+  std::vector<ContourMotion> motions;
+  for (std::size_t c = 0; c < cad.contours.size(); ++c)
+    motions.push_back(sampled_motion(cad.contours[c], kSurfaceMotionMm,
+                                     [&](double s_mm) { return field->material_motion(c, s_mm); }));
+  result.contours = with_edges(cad, scan, std::move(motions), options.edge);
+  result.field = std::move(field);
+}
+
 void deform(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options,
             Registration& result) {
+  if (options.method == RegistrationMethod::kSurface) return deform_surface(cad, scan, options, result);
   const RigidMotion& rigid = result.rigid.scan_from_cad;
   std::vector<ContourMotion> motions;
   for (const Curve& curve : cad.contours) motions.push_back(rigid_motion(curve, rigid));
@@ -250,13 +270,14 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   for (const Curve& curve : cad.contours) size_mm = std::max(size_mm, curve.length_mm() / 6.28);
   result.free_directions = free_directions(result.rigid.information, result.rigid.pivot_mm, size_mm);
   deform(cad, scan, options, result);
+  if (!result.usable()) return result;
   const RigidMotion& pose = result.rigid.scan_from_cad;
   result.stage_residual_mm.emplace_back(
       "rigid", edge_rms(cad, result.contours,
                         [&](std::size_t, double, const Eigen::Vector3d& p) { return pose * p; }));
-  if (options.method == RegistrationMethod::kSubdivision)
+  if (options.method != RegistrationMethod::kRigid)
     result.stage_residual_mm.emplace_back(
-        "subdivision",
+        result.field->method(),
         edge_rms(cad, result.contours, [&](std::size_t c, double s_mm, const Eigen::Vector3d& p) {
           return result.contours[c].motion.at(s_mm) * p;
         }));
@@ -264,10 +285,8 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   for (const ContourResult& contour : result.contours)
     result.density_per_mm2 = std::max(result.density_per_mm2, contour.edge.density_per_mm2);
   judge_coverage(cad, options, result);
-  if (options.method == RegistrationMethod::kSubdivision) {
-    judge_seams(cad, result);
-    judge_residuals(cad, scan, result);
-  }
+  if (options.method == RegistrationMethod::kSubdivision) judge_seams(cad, result);
+  if (options.method != RegistrationMethod::kRigid) judge_residuals(cad, scan, result);
   return result;
 }
 

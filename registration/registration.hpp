@@ -12,10 +12,11 @@
 #include "registration/rigid_icp.hpp"
 #include "registration/subdivision_field.hpp"
 #include "registration/subdivision_icp.hpp"
+#include "registration/surface_refine.hpp"
 
 namespace arris {
 
-enum class RegistrationMethod { kRigid, kSubdivision };
+enum class RegistrationMethod { kRigid, kSubdivision, kSurface };
 
 /// Everything the recipe may choose about registration.
 struct RegistrationOptions {
@@ -23,6 +24,7 @@ struct RegistrationOptions {
   CoarseAlignOptions coarse;
   RigidIcpOptions rigid;
   SubdivisionIcpOptions subdivision;
+  SurfaceOptions surface;
   EdgeFitOptions edge;
   bool follow_edge = true;       ///< role `edge`
   double band_mm = 60.0;         ///< where the field speaks

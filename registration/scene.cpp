@@ -4,8 +4,21 @@
 
 namespace arris {
 
+Eigen::Vector3d inward_of(const Curve& contour, double arc_mm) {
+  return contour.normal(arc_mm).cross(contour.tangent(arc_mm)).normalized();
+}
+
 Eigen::Vector3d CadModel::inward(std::size_t c, double arc_mm) const {
-  return contours[c].normal(arc_mm).cross(contours[c].tangent(arc_mm)).normalized();
+  return inward_of(contours[c], arc_mm);
+}
+
+Eigen::Vector3d CadModel::smooth_normal(const SurfacePoint& foot) const {
+  const auto& corners = mesh.triangles[static_cast<std::size_t>(foot.triangle)];
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < 3; ++k)
+    normal += foot.barycentric[static_cast<Eigen::Index>(k)] *
+              vertex_normals[static_cast<std::size_t>(corners[k])];
+  return normal.normalized();
 }
 
 }  // namespace arris

@@ -8,8 +8,12 @@
 #include "acquisition/geometry/polyline.hpp"
 #include "acquisition/geometry/surface_query.hpp"
 #include "acquisition/types/contour.hpp"
+#include "acquisition/types/triangle_mesh.hpp"
 
 namespace arris {
+
+/// Unit direction in the surface at s of a contour, across it, into the material: normal x tangent.
+[[nodiscard]] Eigen::Vector3d inward_of(const Curve& contour, double arc_mm);
 
 /// The drawing, ready for queries: frame Cad, mm. Built once a part number.
 struct CadModel {
@@ -18,9 +22,13 @@ struct CadModel {
       contours;  ///< accepted contours, each with normals; material on the left seen against them
 
   std::vector<Curve> others = {};  ///< contours that are not followed; they tell poses apart
+  TriangleMesh mesh = {};          ///< what `surface` was built from
+  std::vector<Eigen::Vector3d> vertex_normals = {};  ///< smooth, unit, one a vertex of `mesh`
 
   /// Unit direction in the surface at s, across contour c, into the material: normal x tangent.
   [[nodiscard]] Eigen::Vector3d inward(std::size_t c, double arc_mm) const;
+  /// Unit normal at a foot, interpolated over its triangle: smooth where the drawing is.
+  [[nodiscard]] Eigen::Vector3d smooth_normal(const SurfacePoint& foot) const;
 };
 
 /// How the scan's normals got their sign; decides whether both sides of the part must be tried.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -65,6 +66,11 @@ class ContourMotion {
   Subdivision subdivision_;
   std::vector<SegmentFit> fits_;
 };
+
+/// The motion of a smooth field along a contour, as one segment every step_mm or less; between their middles
+/// the blend is off by its change of curvature times step^2 / 8.
+[[nodiscard]] ContourMotion sampled_motion(const Curve& nominal, double step_mm,
+                                           const std::function<RigidMotion(double arc_mm)>& motion_at);
 
 /// Scan edge points that a segment is fitted to: those found by the angle gap, or a sharpened edge.
 struct EdgeData {

@@ -213,10 +213,7 @@ struct Search {
 
 }  // namespace
 
-SurfaceQuery::SurfaceQuery(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>(mesh)) {}
-SurfaceQuery::~SurfaceQuery() = default;
-SurfaceQuery::SurfaceQuery(SurfaceQuery&&) noexcept = default;
-SurfaceQuery& SurfaceQuery::operator=(SurfaceQuery&&) noexcept = default;
+SurfaceQuery::SurfaceQuery(const TriangleMesh& mesh) : impl_(std::make_shared<const Impl>(mesh)) {}
 
 SurfacePoint SurfaceQuery::closest(const Eigen::Vector3d& query_mm, double max_distance_mm) const {
   const Impl& impl = *impl_;

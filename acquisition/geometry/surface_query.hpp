@@ -28,16 +28,13 @@ class SurfaceQuery {
  public:
   /// Copies the mesh. Build O(n log n). Throws Error(kBug) for indices out of range.
   explicit SurfaceQuery(const TriangleMesh& mesh);
-  ~SurfaceQuery();
-  SurfaceQuery(SurfaceQuery&&) noexcept;
-  SurfaceQuery& operator=(SurfaceQuery&&) noexcept;
 
   /// Nearest point within max_distance_mm (triangle -1 if there is none).
   [[nodiscard]] SurfacePoint closest(const Eigen::Vector3d& query_mm, double max_distance_mm = 1e30) const;
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::shared_ptr<const Impl> impl_;  // never changes: copies share it
 };
 
 }  // namespace arris

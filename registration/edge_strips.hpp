@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "registration/carried_contour.hpp"
+#include "registration/surface_pairs.hpp"
+
+namespace arris {
+
+/// The strips of material beside edges that the scan shows, under a surface field: which points lie how far
+/// inside, where the edge was seen, and what that says about the field (EdgeSupport).
+class EdgeStrips {
+ public:
+  /// edges must outlive this; spacing_mm is the scan's.
+  EdgeStrips(std::vector<const Curve*> edges, const SurfaceBasis& basis, double strip_mm, double spacing_mm);
+
+  /// Renews the strips: pairs within reach_mm of an edge carried by shift_mm, and within gate_mm of the
+  /// surface.
+  void update(const std::vector<SurfacePair>& pairs, const std::vector<Eigen::Vector3d>& shift_mm,
+              double reach_mm, double gate_mm, int threads);
+
+  struct Point {
+    std::size_t edge = 0;
+    CarriedContour::Foot foot;
+    double weight = 0.0;  ///< undoes the fan of a bent contour; 0: no point of a strip
+  };
+  [[nodiscard]] const std::vector<Point>& points() const { return points_; }
+  /// Adds points [begin, end): offset_mm is how far each edge lies inside the material of the carried nominal.
+  void add(std::size_t begin, std::size_t end, const std::vector<double>& offset_mm, double tau_mm,
+           double stray_ratio, SurfaceSystem& system) const;
+
+  [[nodiscard]] std::size_t size() const { return edges_.size(); }
+  [[nodiscard]] const std::vector<ContourStation>& stations(std::size_t edge) const {
+    return edges_[edge].stations;
+  }
+  /// Median over the bins; points per mm^2.
+  [[nodiscard]] double density_per_mm2(std::size_t edge) const { return edges_[edge].density_per_mm2; }
+  /// Scale of the support at which an edge known up to a smooth shift over `share_ratio` of its length shows
+  /// itself: 1 / (density * share * length), the largest over the edges.
+  [[nodiscard]] double finest_tau_mm(double share_ratio) const;
+  /// Greatest density of all edges, for the yardstick 1 / (density * 50 mm).
+  [[nodiscard]] double greatest_density_per_mm2() const;
+
+ private:
+  struct Edge {
+    const Curve* curve = nullptr;
+    std::vector<ContourStation> stations;
+    std::vector<Eigen::Vector3d> inward;  // deformed, one a station
+    std::vector<char> seen;
+    double bin_mm = 1.0, density_per_mm2 = 0.0;
+  };
+  [[nodiscard]] std::size_t bin_of(const Edge& edge, double arc_mm) const;
+  void find_seen(std::size_t e);
+
+  std::vector<Edge> edges_;
+  double strip_mm_, spacing_mm_;
+  std::vector<Point> points_;
+};
+
+}  // namespace arris

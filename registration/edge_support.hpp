@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cmath>
+
+namespace arris {
+
+/// One-sided support of an edge: scan points lie on its material side, with a density that is uniform near
+/// it. A point at distance g inside the edge costs -log sigmoid(g / tau - 0.541), and each point of a strip of
+/// width w pulls the edge inward by 1 / w, its share of the density: with log(1 + exp(0.541)) = 1 the two
+/// balance without bias for a uniform density at any tau. Points far outside are strays, and let go.
+struct EdgeSupport {
+  static constexpr double kBalance = 0.541;
+  double tau_mm = 1.0;
+  double strip_mm = 10.0;
+  double stray_ratio = 0.0;  ///< of the density: points beyond the edge that are no edge at all
+
+  /// Derivative of the point's cost by g, and a curvature that never overshoots (bound tanh(x/2) / (2x) for
+  /// points outside, where the true one falls towards zero).
+  struct Pull {
+    double slope_per_mm = 0.0, curvature_per_mm2 = 0.0;
+  };
+  [[nodiscard]] Pull at(double inside_mm) const {
+    Pull pull;
+    if (inside_mm > strip_mm) return pull;
+    const double x = inside_mm / tau_mm - kBalance;
+    const double inside = x >= 0.0 ? 1.0 / (1.0 + std::exp(-x)) : std::exp(x) / (1.0 + std::exp(x));
+    const double trusted = inside / (inside + stray_ratio);
+    pull.slope_per_mm = -trusted * (1.0 - inside) / tau_mm + (inside_mm > 0.0 ? 1.0 / strip_mm : 0.0);
+    const double bend = x < -1e-6 ? std::tanh(0.5 * x) / (2.0 * x) : inside * (1.0 - inside);
+    pull.curvature_per_mm2 = trusted * bend / (tau_mm * tau_mm);
+    return pull;
+  }
+};
+
+}  // namespace arris

@@ -1,0 +1,102 @@
+#include "registration/surface_basis.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/types/frames.hpp"
+
+namespace arris {
+namespace {
+
+constexpr double kRadiusSpacings = 2.4;
+constexpr double kCosSameSheet = 0.2;
+constexpr double kQuadraticRidge = 1e-5;  // of the moment matrix, on the second-order terms only
+constexpr double kWorstPivotRatio = 1e-9;
+constexpr std::size_t kFewestNodes = 6;
+
+/// Wendland's C2 function; 1 at 0, 0 from q = 1 on.
+double wendland_c2(double q) {
+  if (q >= 1.0) return 0.0;
+  const double r = 1.0 - q;
+  return r * r * r * r * (4.0 * q + 1.0);
+}
+
+}  // namespace
+
+SurfaceBasis::SurfaceBasis(SurfaceNodes nodes, double spacing_mm)
+    : nodes_(std::move(nodes)), spacing_mm_(spacing_mm), radius_mm_(kRadiusSpacings * spacing_mm) {
+  if (nodes_.points_mm.empty()) return;
+  Eigen::Vector3d high_mm = low_mm_ = nodes_.points_mm.front();
+  for (const Eigen::Vector3d& p : nodes_.points_mm) {
+    low_mm_ = low_mm_.cwiseMin(p);
+    high_mm = high_mm.cwiseMax(p);
+  }
+  count_ = ((high_mm - low_mm_) / radius_mm_).array().floor().cast<int>() + 1;
+  const auto place = [&](const Eigen::Vector3d& p) {
+    const Eigen::Array3i at = ((p - low_mm_) / radius_mm_).array().floor().cast<int>();
+    return cell_of(at.x(), at.y(), at.z());
+  };
+  start_.assign(static_cast<std::size_t>(count_.prod()) + 1, 0);
+  for (const Eigen::Vector3d& p : nodes_.points_mm) ++start_[place(p) + 1];
+  for (std::size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
+  std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
+  order_.resize(nodes_.points_mm.size());
+  for (std::size_t i = 0; i < order_.size(); ++i)
+    order_[next[place(nodes_.points_mm[i])]++] = static_cast<std::int32_t>(i);
+}
+
+std::size_t SurfaceBasis::cell_of(int x, int y, int z) const {
+  return static_cast<std::size_t>((z * count_.y() + y) * count_.x() + x);
+}
+
+BasisRow SurfaceBasis::row(const Eigen::Vector3d& p_cad_mm, const Eigen::Vector3d& normal) const {
+  BasisRow row;
+  row.normal = normal;
+  const Eigen::Matrix3d frame = frame_with_z(normal);
+  row.t1 = frame.col(0);
+  row.t2 = frame.col(1);
+  if (order_.empty()) return row;
+  const Eigen::Array3i at = ((p_cad_mm - low_mm_) / radius_mm_).array().floor().cast<int>();
+  std::vector<double> weights;
+  const Eigen::Array3i low = (at - 1).max(0), high = (at + 1).min(count_ - 1);
+  for (int z = low.z(); z <= high.z(); ++z)
+    for (int y = low.y(); y <= high.y(); ++y)
+      for (int x = low.x(); x <= high.x(); ++x)
+        for (std::uint32_t k = start_[cell_of(x, y, z)]; k < start_[cell_of(x, y, z) + 1]; ++k) {
+          const std::int32_t j = order_[k];
+          const Eigen::Vector3d apart = nodes_.points_mm[static_cast<std::size_t>(j)] - p_cad_mm;
+          const double weight = wendland_c2(apart.norm() / radius_mm_);
+          if (weight <= 0.0 || nodes_.normals[static_cast<std::size_t>(j)].dot(normal) < kCosSameSheet)
+            continue;
+          const double u = apart.dot(row.t1) / radius_mm_, v = apart.dot(row.t2) / radius_mm_;
+          BasisRow::Weights p;
+          p << 1.0, u, v, 0.5 * u * u, u * v, 0.5 * v * v;
+          row.node.push_back(j);
+          row.weight.push_back(p);
+          weights.push_back(weight);
+        }
+  Eigen::Matrix<double, 6, 6> moment = Eigen::Matrix<double, 6, 6>::Zero();
+  double total = 0.0;
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    moment.noalias() += weights[k] * row.weight[k] * row.weight[k].transpose();
+    total += weights[k];
+  }
+  for (int i = BasisRow::kD11; i <= BasisRow::kD22; ++i) moment(i, i) += kQuadraticRidge * total;
+  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(moment);
+  if (row.node.size() < kFewestNodes ||
+      solver.vectorD().minCoeff() < kWorstPivotRatio * solver.vectorD().maxCoeff()) {
+    row.node.clear();
+    row.weight.clear();
+    return row;
+  }
+  const double slope = 1.0 / radius_mm_, bend = slope * slope;
+  BasisRow::Weights units;
+  units << 1.0, slope, slope, bend, bend, bend;
+  for (std::size_t k = 0; k < weights.size(); ++k)
+    row.weight[k] = units.cwiseProduct(solver.solve(Eigen::Matrix<double, 6, 1>(weights[k] * row.weight[k])));
+  return row;
+}
+
+}  // namespace arris

@@ -1,0 +1,89 @@
+#include "registration/surface_field.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace arris {
+namespace {
+
+/// Nearest accepted contour; -1 when there is none.
+int nearest_contour(const CadModel& cad, const Eigen::Vector3d& p_mm, CurveFoot& foot) {
+  int nearest = -1;
+  foot.distance_mm = 1e300;
+  for (std::size_t c = 0; c < cad.contours.size(); ++c) {
+    const CurveFoot candidate = cad.contours[c].nearest(p_mm);
+    if (candidate.distance_mm >= foot.distance_mm) continue;
+    foot = candidate;
+    nearest = static_cast<int>(c);
+  }
+  return nearest;
+}
+
+}  // namespace
+
+SurfaceField::SurfaceField(const CadModel& cad, SurfaceFit fit, double band_mm, bool follow_edge)
+    : cad_(cad), fit_(std::move(fit)), band_mm_(band_mm), follow_edge_(follow_edge) {}
+
+MappedPoint SurfaceField::map(const Eigen::Vector3d& p_cad_mm) const {
+  MappedPoint mapped;
+  CurveFoot beside;
+  const int contour = nearest_contour(cad_, p_cad_mm, beside);
+  const SurfacePoint foot = cad_.surface.closest(p_cad_mm, band_mm_);
+  if (contour < 0 || foot.triangle < 0 || beside.distance_mm > band_mm_) return mapped;
+  const BasisRow row = fit_.basis->row(foot.foot_mm, cad_.smooth_normal(foot));
+  if (!row.usable()) return mapped;
+  const LocalShape shape = local_shape(row, fit_.shift_mm);
+  const Eigen::Matrix3d turn = shape.rotation(row);
+  const Eigen::Vector3d inward = cad_.inward(static_cast<std::size_t>(contour), beside.arc_mm);
+  Eigen::Vector3d p_mm = foot.foot_mm + shape.shift_mm + turn * (p_cad_mm - foot.foot_mm);
+  if (follow_edge_) p_mm += fit_.offset_mm[static_cast<std::size_t>(contour)] * (turn * inward);
+  mapped.p_scan_mm = fit_.scan_from_cad * p_mm;
+  mapped.rotation_scan_from_cad = fit_.scan_from_cad.linear() * turn;
+  const Eigen::Vector3d tangent = inward.cross(row.normal).normalized();
+  mapped.sd_mm = {sd_along_mm(row, shape.normal, -1),
+                  sd_along_mm(row, turn * inward, follow_edge_ ? contour : -1),
+                  sd_along_mm(row, turn * tangent, -1)};
+  mapped.from_data = true;
+  mapped.in_domain = true;
+  return mapped;
+}
+
+double SurfaceField::sd_along_mm(const BasisRow& row, const Eigen::Vector3d& direction, int offset) const {
+  const Eigen::MatrixXd& c = fit_.covariance;
+  if (c.size() == 0) return 0.0;
+  const Eigen::Index last = static_cast<Eigen::Index>(3 * fit_.shift_mm.size()) + offset;
+  double variance = offset < 0 ? 0.0 : c(last, last);
+  for (std::size_t a = 0; a < row.node.size(); ++a) {
+    const Eigen::Index at = 3 * row.node[a];
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t b = 0; b < row.node.size(); ++b)
+      sum += row.weight[b][0] * (c.block<3, 3>(at, 3 * row.node[b]) * direction);
+    if (offset >= 0) sum += 2.0 * c.block<3, 1>(at, last);
+    variance += row.weight[a][0] * direction.dot(sum);
+  }
+  return std::sqrt(std::max(0.0, variance));
+}
+
+RigidMotion SurfaceField::material_motion(std::size_t contour, double arc_mm) const {
+  const Curve& curve = cad_.contours[contour];
+  const Eigen::Vector3d p_mm = curve.point_mm(arc_mm);
+  const BasisRow row = fit_.basis->row(p_mm, curve.normal(arc_mm));
+  if (!row.usable()) return fit_.scan_from_cad;
+  const LocalShape shape = local_shape(row, fit_.shift_mm);
+  RigidMotion moved = RigidMotion::Identity();
+  moved.linear() = shape.rotation(row);
+  moved.translation() = p_mm + shape.shift_mm - moved.linear() * p_mm;
+  return fit_.scan_from_cad * moved;
+}
+
+std::vector<double> SurfaceField::parameters() const {
+  const Eigen::Matrix<double, 3, 4> top = fit_.scan_from_cad.matrix().topRows<3>();
+  std::vector<double> numbers(top.data(), top.data() + top.size());
+  for (const Eigen::Vector3d& shift : fit_.shift_mm)
+    numbers.insert(numbers.end(), shift.data(), shift.data() + 3);
+  numbers.insert(numbers.end(), fit_.offset_mm.begin(), fit_.offset_mm.end());
+  return numbers;
+}
+
+}  // namespace arris

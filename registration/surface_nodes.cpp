@@ -1,0 +1,138 @@
+#include "registration/surface_nodes.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "acquisition/types/error.hpp"
+
+namespace arris {
+namespace {
+
+constexpr double kCosSameSheet = 0.2;    // a node serves cells whose normal turns less than this
+constexpr double kCoverRatio = 0.75;     // of the spacing: how far a cell may be from its node
+constexpr std::size_t kMostCells = 1000000;
+
+double to_contours_mm(const CadModel& cad, const Eigen::Vector3d& p_mm) {
+  double nearest_mm = 1e300;
+  for (const Curve& curve : cad.contours) nearest_mm = std::min(nearest_mm, curve.nearest(p_mm).distance_mm);
+  return nearest_mm;
+}
+
+class CellMaker {
+ public:
+  CellMaker(const CadModel& cad, double band_mm, double cell_mm)
+      : cad_(cad), band_mm_(band_mm), cell_mm_(cell_mm) {}
+
+  void add(std::size_t triangle) {
+    const auto& t = cad_.mesh.triangles[triangle];
+    const Eigen::Vector3d& a = vertex(t[0]);
+    const Eigen::Vector3d& b = vertex(t[1]);
+    const Eigen::Vector3d& c = vertex(t[2]);
+    const double longest_mm = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    if (band_mm_ >= 0.0 && to_contours_mm(cad_, (a + b + c) / 3.0) > band_mm_ + longest_mm) return;
+    const int cuts = std::max(1, static_cast<int>(std::ceil(longest_mm / cell_mm_)));
+    const double area_mm2 = 0.5 * (b - a).cross(c - a).norm() / (static_cast<double>(cuts) * cuts);
+    if (area_mm2 <= 0.0) return;
+    for (int i = 0; i < cuts; ++i)
+      for (int j = 0; j < 2 * (cuts - i) - 1; ++j) add_part(triangle, cuts, i, j, area_mm2);
+    if (cells.size() > kMostCells)
+      throw Error(Fault::kInput, {.what = "the CAD's band is too large for the surface field",
+                                  .found = "more than a million cells of " + std::to_string(cell_mm_) + " mm",
+                                  .needed = "a narrower band (registration.subdivision.band_mm) or a coarser "
+                                            "registration.surface.node_spacing_mm"});
+  }
+
+  std::vector<SurfaceCell> cells;
+
+ private:
+  const Eigen::Vector3d& vertex(std::int32_t i) const {
+    return cad_.mesh.vertices_mm[static_cast<std::size_t>(i)];
+  }
+
+  /// Part j of strip i when every edge is cut into `cuts`: upright parts are even, hanging ones odd.
+  void add_part(std::size_t triangle, int cuts, int i, int j, double area_mm2) {
+    const auto& t = cad_.mesh.triangles[triangle];
+    const double third = j % 2 == 0 ? 1.0 / 3.0 : 2.0 / 3.0;
+    const double b = (j / 2 + third) / cuts, c = (i + third) / cuts, a = 1.0 - b - c;
+    SurfaceCell cell;
+    cell.centre_mm = a * vertex(t[0]) + b * vertex(t[1]) + c * vertex(t[2]);
+    if (band_mm_ >= 0.0 && to_contours_mm(cad_, cell.centre_mm) > band_mm_) return;
+    SurfacePoint place;
+    place.triangle = static_cast<std::int32_t>(triangle);
+    place.barycentric = {a, b, c};
+    cell.normal = cad_.smooth_normal(place);
+    cell.area_mm2 = area_mm2;
+    cells.push_back(cell);
+  }
+
+  const CadModel& cad_;
+  double band_mm_, cell_mm_;
+};
+
+void add_contour_nodes(const Curve& curve, double spacing_mm, SurfaceNodes& nodes) {
+  const int count = std::max(6, static_cast<int>(std::ceil(curve.length_mm() / spacing_mm)));
+  for (int i = 0; i < count; ++i) {
+    const double s_mm = curve.length_mm() * i / count;
+    nodes.points_mm.push_back(curve.point_mm(s_mm));
+    nodes.normals.push_back(curve.normal(s_mm));
+  }
+}
+
+}  // namespace
+
+std::vector<SurfaceCell> band_cells(const CadModel& cad, double band_mm, double cell_mm) {
+  CellMaker maker(cad, band_mm, cell_mm);
+  for (std::size_t t = 0; t < cad.mesh.triangles.size(); ++t) maker.add(t);
+  return std::move(maker.cells);
+}
+
+std::vector<SurfaceCell> thinned(const std::vector<SurfaceCell>& cells, double cell_mm) {
+  std::map<std::array<int, 6>, std::vector<std::size_t>> cubes;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const Eigen::Array3i at = (cells[i].centre_mm / cell_mm).array().floor().cast<int>();
+    const Eigen::Array3i side = (cells[i].normal * 1.5).array().round().cast<int>();
+    cubes[{at.x(), at.y(), at.z(), side.x(), side.y(), side.z()}].push_back(i);
+  }
+  std::vector<SurfaceCell> fewer;
+  for (const auto& [cube, members] : cubes) {
+    Eigen::Vector3d middle_mm = Eigen::Vector3d::Zero();
+    double area_mm2 = 0.0;
+    for (const std::size_t i : members) {
+      middle_mm += cells[i].area_mm2 * cells[i].centre_mm;
+      area_mm2 += cells[i].area_mm2;
+    }
+    middle_mm /= area_mm2;
+    const std::size_t best = *std::min_element(members.begin(), members.end(), [&](std::size_t a, std::size_t b) {
+      return (cells[a].centre_mm - middle_mm).squaredNorm() < (cells[b].centre_mm - middle_mm).squaredNorm();
+    });
+    fewer.push_back(cells[best]);
+    fewer.back().area_mm2 = area_mm2;
+  }
+  return fewer;
+}
+
+SurfaceNodes place_nodes(const std::vector<const Curve*>& contours, const std::vector<SurfaceCell>& cells,
+                         double spacing_mm) {
+  SurfaceNodes nodes;
+  for (const Curve* curve : contours) add_contour_nodes(*curve, spacing_mm, nodes);
+  std::vector<double> distance_mm(cells.size(), 1e300);
+  const auto serve = [&](const Eigen::Vector3d& p_mm, const Eigen::Vector3d& normal) {
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      if (cells[i].normal.dot(normal) > kCosSameSheet)
+        distance_mm[i] = std::min(distance_mm[i], (cells[i].centre_mm - p_mm).norm());
+  };
+  for (std::size_t i = 0; i < nodes.points_mm.size(); ++i) serve(nodes.points_mm[i], nodes.normals[i]);
+  while (!cells.empty()) {
+    const auto farthest = std::max_element(distance_mm.begin(), distance_mm.end());
+    if (*farthest <= kCoverRatio * spacing_mm) break;
+    const SurfaceCell& cell = cells[static_cast<std::size_t>(farthest - distance_mm.begin())];
+    nodes.points_mm.push_back(cell.centre_mm);
+    nodes.normals.push_back(cell.normal);
+    serve(cell.centre_mm, cell.normal);
+  }
+  return nodes;
+}
+
+}  // namespace arris

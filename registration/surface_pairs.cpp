@@ -1,0 +1,100 @@
+#include "registration/surface_pairs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/geometry/parallel_for.hpp"
+#include "registration/normal_equations.hpp"
+#include "registration/surface_shape.hpp"
+
+namespace arris {
+namespace {
+
+constexpr double kCosNormalsAgree = 0.5;  // correspondences need normals within 60 degrees
+constexpr std::size_t kChunk = 256;
+
+bool normals_agree(const ScanModel& scan, const Eigen::Vector3d& deformed, const Eigen::Vector3d& measured) {
+  const double cosine = deformed.dot(measured);
+  return (scan.side == SideKnown::kYes ? cosine : std::abs(cosine)) > kCosNormalsAgree;
+}
+
+void find_partner(const CadModel& cad, const SurfaceBasis& basis, const std::vector<Eigen::Vector3d>& shift_mm,
+                  double reach_mm, SurfacePair& pair) {
+  pair.on_face = false;
+  pair.row = {};
+  const SurfacePoint foot = cad.surface.closest(pair.p_mm - pair.guess_mm, reach_mm);
+  if (foot.triangle < 0) return;
+  pair.row = basis.row(foot.foot_mm, cad.smooth_normal(foot));
+  if (!pair.row.usable()) return;
+  const LocalShape shape = local_shape(pair.row, shift_mm);
+  pair.guess_mm = shape.shift_mm;
+  pair.normal = shape.normal;
+  pair.residual_mm = shape.normal.dot(pair.p_mm - foot.foot_mm - shape.shift_mm);
+  pair.on_face = !foot.on_border;
+}
+
+}  // namespace
+
+std::vector<std::size_t> points_near(const CadModel& cad, const ScanModel& scan,
+                                     const RigidMotion& scan_from_cad, double reach_mm, int threads) {
+  const RigidMotion cad_from_scan = scan_from_cad.inverse();
+  std::vector<char> near(scan.points_mm.size(), reach_mm < 0.0 ? 1 : 0);
+  if (reach_mm >= 0.0)
+    parallel_for(near.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Eigen::Vector3d p_mm = cad_from_scan * scan.points_mm[i];
+        for (const Curve& curve : cad.contours)
+          if (curve.nearest(p_mm).distance_mm < reach_mm) near[i] = 1;
+      }
+    });
+  std::vector<std::size_t> points;
+  for (std::size_t i = 0; i < near.size(); ++i)
+    if (near[i]) points.push_back(i);
+  return points;
+}
+
+void pair_surface(const CadModel& cad, const ScanModel& scan, const std::vector<std::size_t>& points,
+                  const RigidMotion& scan_from_cad, const SurfaceBasis& basis,
+                  const std::vector<Eigen::Vector3d>& shift_mm, double reach_mm, int threads,
+                  std::vector<SurfacePair>& pairs) {
+  const RigidMotion cad_from_scan = scan_from_cad.inverse();
+  pairs.resize(points.size());
+  parallel_for(points.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      SurfacePair& pair = pairs[i];
+      pair.p_mm = cad_from_scan * scan.points_mm[points[i]];
+      find_partner(cad, basis, shift_mm, reach_mm, pair);
+      if (pair.on_face)
+        pair.on_face = normals_agree(scan, pair.normal, cad_from_scan.linear() * scan.normals[points[i]]);
+    }
+  });
+}
+
+double residual_sigma_mm(const std::vector<SurfacePair>& pairs, double scale_mm) {
+  std::vector<double> sizes;
+  for (const SurfacePair& pair : pairs)
+    if (pair.on_face && std::abs(pair.residual_mm) < 2.0 * scale_mm)
+      sizes.push_back(std::abs(pair.residual_mm));
+  if (sizes.empty()) return 0.0;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return 1.4826 * *middle;
+}
+
+void add_surface(const std::vector<SurfacePair>& pairs, std::size_t begin, std::size_t end, double sigma_mm,
+                 double scale_mm, SurfaceSystem& system) {
+  SurfaceSystem::Row row;
+  for (std::size_t i = begin; i < end; ++i) {
+    const SurfacePair& pair = pairs[i];
+    if (!pair.on_face) continue;
+    row.node = &pair.row.node;
+    row.direction.clear();
+    for (const BasisRow::Weights& w : pair.row.weight)
+      row.direction.push_back(w[BasisRow::kValue] * pair.normal);
+    const double weight = geman_mcclure_weight(pair.residual_mm * pair.residual_mm, scale_mm) /
+                          (sigma_mm * sigma_mm);
+    system.add(row, -weight * pair.residual_mm, weight);
+  }
+}
+
+}  // namespace arris

@@ -1,0 +1,244 @@
+#include "registration/surface_refine.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/geometry/parallel_for.hpp"
+#include "acquisition/types/error.hpp"
+#include "registration/edge_strips.hpp"
+#include "registration/surface_pairs.hpp"
+
+namespace arris {
+namespace {
+
+constexpr double kAnneal = 0.6, kScaleSigmas = 4.0, kGateSigmas = 4.0;
+constexpr double kStartTauMm = 2.0, kTauShrink = 0.6;
+constexpr double kStrayRatio = 5e-3, kStrayRatioPerMm = 0.01, kMostStrayRatio = 0.05;  // grow with the gate
+constexpr double kFineCellRatio = 0.4, kCellRatio = 0.6;  // of the node spacing: to place nodes; of the priors
+constexpr std::size_t kMostNodes = 400;
+constexpr double kGaugeMm = 50.0;     // weak pull to the rigid start, for motions that nothing else holds
+constexpr double kProximalMm = 5.0;   // a round's moves along such motions stay small
+constexpr double kSettledMm = 1e-3, kSettledEdgeLimits = 0.01;  // moves of a round that no longer matter
+constexpr double kUnknownThicknessWiden = 2.0;  // the mid-surface's strain is then not known
+constexpr std::size_t kParts = 8;               // each list is added up in this many chunks
+
+double area_mm2_of(const std::vector<SurfaceCell>& cells) {
+  double area_mm2 = 0.0;
+  for (const SurfaceCell& cell : cells) area_mm2 += cell.area_mm2;
+  return area_mm2;
+}
+
+class SurfaceFitter {
+ public:
+  SurfaceFitter(const CadModel& cad, const ScanModel& scan, const RigidMotion& rigid,
+                const SurfaceOptions& options)
+      : cad_(cad), scan_(scan), options_(options), prior_(options.prior) {
+    fit_.scan_from_cad = rigid;
+    if (prior_.thickness_mm <= 0.0) prior_.strain_ratio *= kUnknownThicknessWiden;
+    for (const Curve& curve : options.role == ContourRole::kEdge ? cad.contours : cad.others)
+      edges_.push_back(&curve);
+    make_basis();
+    const double strip_mm = std::clamp(4.0 * scan.spacing_mm, 3.0, options.strip_mm);
+    strips_.emplace(edges_, *fit_.basis, strip_mm, scan.spacing_mm);
+    strip_reach_mm_ = strip_mm + options.start_scale_mm;
+    for (const Curve& curve : cad.contours) followed_.push_back(contour_stations(curve, *fit_.basis, 5.0));
+    fit_.shift_mm.assign(fit_.basis->size(), Eigen::Vector3d::Zero());
+    fit_.offset_mm.assign(edges_.size(), 0.0);
+    const double reach_mm = options.band_mm + options.start_scale_mm + 3.0 * scan.spacing_mm;
+    points_ = points_near(cad, scan, rigid, options.role == ContourRole::kCut ? -1.0 : reach_mm,
+                          options.threads);
+  }
+
+  SurfaceFit run() {
+    if (fit_.basis->size() < 6) {
+      fit_.reason = "the drawing's band has no room for a surface field";
+      return std::move(fit_);
+    }
+    scale_mm_ = options_.start_scale_mm;
+    tau_mm_ = std::max(kStartTauMm, 0.5 * scan_.spacing_mm);
+    fit_.stop = "round limit";
+    for (int round = 0; round < options_.max_rounds; ++round) {
+      fit_.rounds = round + 1;
+      look();
+      const double finest_tau_mm = strips_->finest_tau_mm(options_.edge_share_ratio);
+      tau_mm_ = std::max(finest_tau_mm, tau_mm_);
+      const bool settled =
+          tau_mm_ <= 1.001 * finest_tau_mm && scale_mm_ <= 1.001 * kScaleSigmas * fit_.sigma_mm;
+      scale_mm_ = std::max(scale_mm_, kScaleSigmas * fit_.sigma_mm);
+      const double moved_mm = step();
+      if (!std::isfinite(moved_mm)) {
+        fit_.reason = "the surface field did not stay finite";
+        return std::move(fit_);
+      }
+      if (settled && moved_mm < settled_mm()) {
+        fit_.stop = "converged";
+        break;
+      }
+      scale_mm_ = std::max(kScaleSigmas * fit_.sigma_mm, kAnneal * scale_mm_);
+      tau_mm_ = std::max(finest_tau_mm, kTauShrink * tau_mm_);
+    }
+    finish();
+    return std::move(fit_);
+  }
+
+ private:
+  void make_basis() {
+    double spacing_mm = options_.node_spacing_mm;
+    const double band_mm = options_.role == ContourRole::kCut ? -1.0 : options_.band_mm;
+    std::vector<SurfaceCell> cells = band_cells(cad_, band_mm, kFineCellRatio * spacing_mm);
+    spacing_mm = std::max(spacing_mm, std::sqrt(area_mm2_of(cells) / static_cast<double>(kMostNodes)));
+    std::vector<const Curve*> node_curves;
+    for (const Curve& curve : cad_.contours) node_curves.push_back(&curve);
+    if (options_.role == ContourRole::kCut)
+      for (const Curve& curve : cad_.others) node_curves.push_back(&curve);
+    auto basis = std::make_shared<SurfaceBasis>(place_nodes(node_curves, cells, spacing_mm), spacing_mm);
+    for (const SurfaceCell& cell : thinned(cells, kCellRatio * spacing_mm)) {
+      SheetCell sheet(cell, *basis);
+      if (sheet.usable()) sheet_.push_back(std::move(sheet));
+    }
+    fit_.basis = std::move(basis);
+  }
+
+  /// Partners, residuals and strips under the field as it is.
+  void look() {
+    pair_surface(cad_, scan_, points_, fit_.scan_from_cad, *fit_.basis, fit_.shift_mm,
+                 4.0 * options_.start_scale_mm + 10.0, options_.threads, pairs_);
+    fit_.sigma_mm =
+        std::max(residual_sigma_mm(pairs_, scale_mm_), 0.5 * scan_.noise_sigma_mm + 1e-3);
+    fit_.pairs = static_cast<std::size_t>(
+        std::count_if(pairs_.begin(), pairs_.end(), [](const SurfacePair& pair) { return pair.on_face; }));
+    strips_->update(pairs_, fit_.shift_mm, strip_reach_mm_, kGateSigmas * fit_.sigma_mm, options_.threads);
+  }
+
+  /// Sums add(begin, end, system) over fixed chunks, in their order.
+  template <class Add>
+  SurfaceSystem summed(std::size_t count, const Add& add) const {
+    const std::size_t chunk = std::max<std::size_t>(1, (count + kParts - 1) / kParts);
+    return parallel_sum(count, chunk, options_.threads,
+                        SurfaceSystem(fit_.shift_mm.size(), fit_.offset_mm.size()),
+                        [&](std::size_t begin, std::size_t end) {
+                          SurfaceSystem part(fit_.shift_mm.size(), fit_.offset_mm.size());
+                          add(begin, end, part);
+                          return part;
+                        });
+  }
+
+  SurfaceSystem assemble() const {
+    const double stray_ratio =
+        std::min(kMostStrayRatio, kStrayRatio + kStrayRatioPerMm * kGateSigmas * fit_.sigma_mm);
+    SurfaceSystem system = summed(pairs_.size(), [&](std::size_t begin, std::size_t end, SurfaceSystem& part) {
+      add_surface(pairs_, begin, end, fit_.sigma_mm, scale_mm_, part);
+      strips_->add(begin, end, fit_.offset_mm, tau_mm_, stray_ratio, part);
+    });
+    system += summed(sheet_.size(), [&](std::size_t begin, std::size_t end, SurfaceSystem& part) {
+      for (std::size_t i = begin; i < end; ++i) sheet_[i].add(fit_.shift_mm, prior_, part);
+    });
+    add_weak_priors(system);
+    return system;
+  }
+
+  void add_weak_priors(SurfaceSystem& system) const {
+    const double gauge = 1.0 / (kGaugeMm * kGaugeMm * static_cast<double>(system.nodes));
+    for (std::size_t j = 0; j < system.nodes; ++j) {
+      const Eigen::Index at = static_cast<Eigen::Index>(3 * j);
+      system.gradient.segment<3>(at) += gauge * fit_.shift_mm[j];
+      system.information.diagonal().segment<3>(at).array() += gauge;
+    }
+    const double offset = 1.0 / (options_.offset_sd_mm * options_.offset_sd_mm);
+    for (std::size_t e = 0; e < fit_.offset_mm.size(); ++e) {
+      const Eigen::Index at = static_cast<Eigen::Index>(3 * system.nodes + e);
+      system.gradient[at] += offset * fit_.offset_mm[e];
+      system.information(at, at) += offset;
+    }
+  }
+
+  /// One Gauss-Newton step; returns the rms move of the followed contours across and normal to them.
+  double step() {
+    SurfaceSystem system = assemble();
+    const Eigen::Index n = static_cast<Eigen::Index>(3 * system.nodes);
+    system.information.diagonal().head(n).array() += 1.0 / (kProximalMm * kProximalMm);
+    const Eigen::VectorXd move =
+        -Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>(system.information).solve(system.gradient);
+    std::vector<Eigen::Vector3d> moved(system.nodes);
+    for (std::size_t j = 0; j < moved.size(); ++j) {
+      moved[j] = move.segment<3>(static_cast<Eigen::Index>(3 * j));
+      fit_.shift_mm[j] += moved[j];
+    }
+    for (std::size_t e = 0; e < fit_.offset_mm.size(); ++e)
+      fit_.offset_mm[e] += move[n + static_cast<Eigen::Index>(e)];
+    return moved_mm(moved);
+  }
+
+  double moved_mm(const std::vector<Eigen::Vector3d>& moved) const {
+    double sum2 = 0.0, count = 1e-9;
+    for (const std::vector<ContourStation>& stations : followed_)
+      for (const ContourStation& station : stations) {
+        Eigen::Vector3d d = station.row.combine(BasisRow::kValue, moved);
+        d -= d.dot(station.tangent) * station.tangent;
+        sum2 += d.squaredNorm();
+        count += 1.0;
+      }
+    return std::sqrt(sum2 / count);
+  }
+
+  double settled_mm() const {
+    return std::max(kSettledMm, kSettledEdgeLimits / (50.0 * strips_->greatest_density_per_mm2()));
+  }
+
+  void finish() {
+    look();
+    scale_mm_ = kScaleSigmas * fit_.sigma_mm;
+    const SurfaceSystem system = assemble();
+    const Eigen::Index n = system.gradient.size();
+    fit_.covariance = Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>(system.information)
+                          .solve(Eigen::MatrixXd::Identity(n, n));
+    for (const SheetCell& cell : sheet_)
+      fit_.mean_strain_ratio += largest_strain(cell.mid_strain(fit_.shift_mm, prior_.thickness_mm)) /
+                                static_cast<double>(sheet_.size());
+  }
+
+  static double largest_strain(const Eigen::Vector3d& strain) {
+    const double middle = 0.5 * (strain[0] + strain[2]);
+    const double radius = std::hypot(0.5 * (strain[0] - strain[2]), strain[1]);
+    return std::max(std::abs(middle - radius), std::abs(middle + radius));
+  }
+
+  const CadModel& cad_;
+  const ScanModel& scan_;
+  const SurfaceOptions& options_;
+  SheetPrior prior_;
+  SurfaceFit fit_;
+  std::vector<SheetCell> sheet_;
+  std::vector<const Curve*> edges_;
+  std::optional<EdgeStrips> strips_;
+  std::vector<std::vector<ContourStation>> followed_;
+  std::vector<std::size_t> points_;
+  std::vector<SurfacePair> pairs_;
+  double scale_mm_ = 10.0, tau_mm_ = kStartTauMm, strip_reach_mm_ = 20.0;
+};
+
+}  // namespace
+
+void SurfaceOptions::check() const {
+  const auto need = [](bool holds, const char* field, double value, const char* bound) {
+    if (!holds)
+      throw Error(Fault::kRecipe, std::string(field) + " = " + std::to_string(value) + ", need " + bound);
+  };
+  need(band_mm > 0.0, "registration.subdivision.band_mm", band_mm, "> 0");
+  need(node_spacing_mm >= 1.0, "registration.surface.node_spacing_mm", node_spacing_mm, ">= 1");
+  need(prior.strain_ratio > 0.0, "registration.surface.strain", prior.strain_ratio, "> 0");
+  need(prior.bend_per_mm > 0.0, "registration.surface.bend_per_mm", prior.bend_per_mm, "> 0");
+  need(edge_share_ratio > 0.0 && edge_share_ratio <= 1.0, "registration.surface.edge_share", edge_share_ratio,
+       "in (0, 1]");
+  need(offset_sd_mm > 0.0, "registration.surface.offset_sd_mm", offset_sd_mm, "> 0");
+  need(max_rounds >= 1, "registration.surface.max_rounds", max_rounds, ">= 1");
+}
+
+SurfaceFit refine_surface(const CadModel& cad, const ScanModel& scan, const RigidMotion& rigid_scan_from_cad,
+                          const SurfaceOptions& options) {
+  options.check();
+  return SurfaceFitter(cad, scan, rigid_scan_from_cad, options).run();
+}
+
+}  // namespace arris

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "acquisition/types/frames.hpp"
+#include "registration/scene.hpp"
+#include "registration/surface_basis.hpp"
+#include "registration/surface_shape.hpp"
+
+namespace arris {
+
+/// What the edges of the drawing tell.
+enum class ContourRole {
+  kEdge,  ///< accepted contours are on the part: their edges are data, and the path follows them
+  kCut    ///< the tool makes them: their edges, if any, are no data; the drawing's other contours are
+};
+
+/// Options of refine_surface(). Lengths in mm of the CAD.
+struct SurfaceOptions {
+  double band_mm = 60.0;          ///< the field lives on the CAD within this of the contours (role cut: on all)
+  double node_spacing_mm = 30.0;  ///< of the field's nodes; wider when the surface would need too many
+  SheetPrior prior;
+  double edge_share_ratio = 0.33;  ///< an edge is known up to a smooth shift over this share of its length
+  double strip_mm = 10.0;          ///< widest strip of material whose density the edge is judged by
+  double offset_sd_mm = 0.5;       ///< how much larger or smaller than drawn a contour may be, all round
+  ContourRole role = ContourRole::kEdge;
+  double stock_mm = 0.0;         ///< role cut: material that the contour still carries
+  double start_scale_mm = 10.0;  ///< robust scale at the start: about what the rigid motion leaves
+  int max_rounds = 40;
+  int threads = 0;
+  void check() const;  ///< throws Error(kRecipe) naming field, value and bound
+};
+
+/// The deformation of the band: a CAD point x goes to scan_from_cad * (x + u(x)), u from the nodes' shifts.
+struct SurfaceFit {
+  RigidMotion scan_from_cad = RigidMotion::Identity();
+  std::shared_ptr<const SurfaceBasis> basis;
+  std::vector<Eigen::Vector3d> shift_mm;  ///< one a node, CAD frame
+  std::vector<double> offset_mm;          ///< one an edge used: it lies this far inside the material
+  Eigen::MatrixXd covariance;             ///< of the node shifts (3 each), then the offsets; mm^2
+  double sigma_mm = 0.0;                  ///< robust residual normal to the surface
+  double mean_strain_ratio = 0.0;         ///< of the mid-surface: mean of its larger principal strain, absolute
+  std::size_t pairs = 0;
+  int rounds = 0;
+  std::string stop;    ///< "converged", "round limit"
+  std::string reason;  ///< why there is no result; empty when usable
+  [[nodiscard]] bool usable() const { return reason.empty(); }
+};
+
+/// Fits the surface field from a rigid start: scan points to the deformed CAD (point to plane), the edges by
+/// one-sided support, little strain of the mid-surface and little change of curvature. Gauss-Newton with
+/// annealed Geman-McClure weights, partners renewed every round.
+///   refuses  a CAD band without room for six nodes; a fit that does not stay finite
+///   cost     O(rounds * (points * 25^2 + nodes^3)); the same bytes for any number of threads
+///   source   node blending after Sumner, Schmid, Pauly, ACM TOG 26(3), 2007; annealing after Yang et al.,
+///            RA-L 5(2), 2020
+[[nodiscard]] SurfaceFit refine_surface(const CadModel& cad, const ScanModel& scan,
+                                        const RigidMotion& rigid_scan_from_cad, const SurfaceOptions& options);
+
+}  // namespace arris
