@@ -81,11 +81,19 @@ struct Recipe {
     std::string blend = "sin2";
     std::string refine = "none";
   };
+  struct Surface {
+    double node_spacing_mm = 30.0;
+    double strain_ratio = 3e-4;
+    double bend_per_mm = 3e-4;
+    double offset_sd_mm = 0.5;
+  };
   struct Registration {
-    std::string method = "subdivision";
+    std::string method = "surface";
     double min_seen_ratio = 0.6;
     double max_unseen_mm = 100.0;
+    double max_sd_mm = 1.0;
     Subdivision subdivision;
+    Surface surface;
   };
   struct Tolerance {
     double surface_profile_mm = 0.0;  ///< full width of the zone; 0: none stated, shown and not judged

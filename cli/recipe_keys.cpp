@@ -97,8 +97,7 @@ std::vector<Key> contour_keys(Recipe::Contour& contour) {
       {.name = "contour.role",
        .slot = &contour.role,
        .about = "edge: the edge is on the part and the path follows it; cut: the tool makes it",
-       .words = {"edge"},
-       .later = {"cut"}},
+       .words = {"edge", "cut"}},
       {.name = "contour.stock_mm",
        .slot = &contour.stock_mm,
        .about = "material that a cut contour still carries",
@@ -229,7 +228,7 @@ std::vector<Key> registration_keys(Recipe::Registration& registration) {
       {.name = "registration.method",
        .slot = &registration.method,
        .about = "how the deformation is found; rigid: it is not looked for",
-       .words = {"subdivision", "surface", "rigid"},
+       .words = {"surface", "subdivision", "rigid"},
        .later = {"projection"}},
       {.name = "registration.min_seen_ratio",
        .slot = &registration.min_seen_ratio,
@@ -241,6 +240,12 @@ std::vector<Key> registration_keys(Recipe::Registration& registration) {
        .about = "longest stretch of contour that the scan may miss; more is refused",
        .min = 0.0,
        .max = 1e5},
+      {.name = "registration.max_sd_mm",
+       .slot = &registration.max_sd_mm,
+       .about = "method surface: a contour whose place across is known worse than this standard deviation is "
+                "refused",
+       .min = 0.001,
+       .max = 1000.0},
   };
 }
 
@@ -308,6 +313,32 @@ std::vector<Key> subdivision_keys(Recipe::Subdivision& s) {
   };
 }
 
+std::vector<Key> surface_keys(Recipe::Surface& s) {
+  return {
+      {.name = "registration.surface.node_spacing_mm",
+       .slot = &s.node_spacing_mm,
+       .about = "distance of the field's nodes: bends shorter than twice this are not followed",
+       .min = 1.0,
+       .max = 1e4},
+      {.name = "registration.surface.strain_ratio",
+       .slot = &s.strain_ratio,
+       .about = "how much the middle of the sheet is expected to stretch: 3e-4 composite or metal, more for "
+                "plastics",
+       .min = 1e-6,
+       .max = 0.1},
+      {.name = "registration.surface.bend_per_mm",
+       .slot = &s.bend_per_mm,
+       .about = "expected change of the surface's curvature, 1/mm",
+       .min = 1e-7,
+       .max = 0.1},
+      {.name = "registration.surface.offset_sd_mm",
+       .slot = &s.offset_sd_mm,
+       .about = "how much larger or smaller than drawn a contour may be all round (role edge)",
+       .min = 1e-4,
+       .max = 100.0},
+  };
+}
+
 std::vector<Key> tolerance_keys(Recipe::Tolerance& tolerance) {
   return {
       {.name = "tolerance.surface_profile_mm",
@@ -354,6 +385,7 @@ std::vector<Key> recipe_keys(Recipe& recipe) {
   add(from_contour_keys(recipe.toolpath.from_contour));
   add(registration_keys(recipe.registration));
   add(subdivision_keys(recipe.registration.subdivision));
+  add(surface_keys(recipe.registration.surface));
   add(tolerance_keys(recipe.tolerance));
   add({{.name = "robot.controller",
         .slot = &recipe.robot.controller,

@@ -78,11 +78,17 @@ RegistrationOptions registration_options(const Recipe& recipe, int threads) {
   options.method = recipe.registration.method == "rigid"     ? RegistrationMethod::kRigid
                    : recipe.registration.method == "surface" ? RegistrationMethod::kSurface
                                                              : RegistrationMethod::kSubdivision;
-  options.follow_edge = recipe.contour.role == "edge";
+  options.role = options.surface.role =
+      recipe.contour.role == "edge" ? ContourRole::kEdge : ContourRole::kCut;
+  options.surface.stock_mm = recipe.contour.stock_mm;
   options.min_seen_ratio = recipe.registration.min_seen_ratio;
   options.max_unseen_mm = recipe.registration.max_unseen_mm;
   options.band_mm = options.coarse.band_mm = options.rigid.band_mm = options.surface.band_mm = s.band_mm;
-  options.surface.role = options.follow_edge ? ContourRole::kEdge : ContourRole::kCut;
+  options.max_sd_mm = recipe.registration.max_sd_mm;
+  options.surface.node_spacing_mm = recipe.registration.surface.node_spacing_mm;
+  options.surface.prior.strain_ratio = recipe.registration.surface.strain_ratio;
+  options.surface.prior.bend_per_mm = recipe.registration.surface.bend_per_mm;
+  options.surface.offset_sd_mm = recipe.registration.surface.offset_sd_mm;
   options.surface.prior.thickness_mm = recipe.part.thickness_mm.value_or(0.0);
   if (recipe.scan.initial.given) {
     options.coarse.initial_scan_from_cad =

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "registration/edge_pairs.hpp"
-#include "registration/surface_field.hpp"
+#include "registration/surface_stage.hpp"
 
 namespace arris {
 namespace {
@@ -14,7 +14,7 @@ constexpr double kSharpenedSigmaRatio = 0.1;  // scatter of the edge by support,
 constexpr int kSharpeningPasses = 2;
 constexpr double kRigidStartLooseness = 8.0;
 constexpr double kSampleMm = 2.0;
-constexpr double kSurfaceMotionMm = 10.0;  // the surface field along a contour is sampled this finely
+constexpr double kBesideStockMm = 3.0;  // role cut: edges this near to the stock's are no data
 constexpr double kSeamMm = 2.5,
                  kSeamEdgeLimits = 3.0;  // how far segments may disagree: bending, and the edge limit
 constexpr double kResidualMm = 0.15, kResidualSigmas = 5.0;  // of the height beside the edge
@@ -51,14 +51,30 @@ void along(const Curve& curve, const Body& body) {
   for (int i = 0; i < count; ++i) body(curve.length_mm() * i / count);
 }
 
-std::vector<ContourResult> with_edges(const CadModel& cad, const ScanModel& scan,
-                                      std::vector<ContourMotion> motions, const EdgeFitOptions& options) {
-  std::vector<ContourResult> results;
-  for (std::size_t c = 0; c < motions.size(); ++c) {
-    EdgeFit edge = fit_edge(cad, c, scan, motions[c], options);
-    results.push_back({std::move(motions[c]), std::move(edge)});
+/// Role cut: what the tool is still to make, and stock that stands there, is no data.
+void drop_edges_at(const std::vector<Curve>& cut, const RigidMotion& scan_from_cad, double within_mm,
+                   ScanModel& scan) {
+  const RigidMotion cad_from_scan = scan_from_cad.inverse();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < scan.edge_mm.size(); ++i) {
+    const Eigen::Vector3d p_cad_mm = cad_from_scan * scan.edge_mm[i];
+    const bool at_cut = std::any_of(cut.begin(), cut.end(), [&](const Curve& curve) {
+      return curve.nearest(p_cad_mm).distance_mm <= within_mm;
+    });
+    if (at_cut) continue;
+    scan.edge_mm[kept] = scan.edge_mm[i];
+    scan.edge_normals[kept++] = scan.edge_normals[i];
   }
-  return results;
+  scan.edge_mm.resize(kept);
+  scan.edge_normals.resize(kept);
+}
+
+/// Role cut: the pose comes from the drawing's other contours, for the accepted ones are not on the part yet.
+CadModel posed_by_others(const CadModel& cad) {
+  CadModel posed = cad;
+  posed.contours = cad.others;
+  posed.others.clear();
+  return posed;
 }
 
 /// Looser splines: relative to the rigid motion they carry the whole deformation.
@@ -208,26 +224,9 @@ void judge_coverage(const CadModel& cad, const RegistrationOptions& options, Reg
   }
 }
 
-/// The surface field, and the found edge relative to it: what is left is the part's own error.
-void deform_surface(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options,
-                    Registration& result) {
-  SurfaceFit fit = refine_surface(cad, scan, result.rigid.scan_from_cad, options.surface);
-  if (!fit.usable()) {
-    result.refusals.push_back(fit.reason);
-    return;
-  }
-  auto field = std::make_shared<SurfaceField>(cad, std::move(fit), options.band_mm, options.follow_edge);
-  std::vector<ContourMotion> motions;
-  for (std::size_t c = 0; c < cad.contours.size(); ++c)
-    motions.push_back(sampled_motion(cad.contours[c], kSurfaceMotionMm,
-                                     [&](double s_mm) { return field->material_motion(c, s_mm); }));
-  result.contours = with_edges(cad, scan, std::move(motions), options.edge);
-  result.field = std::move(field);
-}
-
 void deform(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options,
             Registration& result) {
-  if (options.method == RegistrationMethod::kSurface) return deform_surface(cad, scan, options, result);
+  if (options.method == RegistrationMethod::kSurface) return deform_by_surface(cad, scan, options, result);
   const RigidMotion& rigid = result.rigid.scan_from_cad;
   std::vector<ContourMotion> motions;
   for (const Curve& curve : cad.contours) motions.push_back(rigid_motion(curve, rigid));
@@ -244,33 +243,53 @@ void deform(const CadModel& cad, const ScanModel& scan, const RegistrationOption
     result.contours = with_edges(cad, scan, std::move(moved), options.edge);
   }
   result.field =
-      std::make_shared<SubdivisionField>(cad, result.contours, options.band_mm, options.follow_edge);
+      std::make_shared<SubdivisionField>(cad, result.contours, options.band_mm, options.role == ContourRole::kEdge);
 }
 
 }  // namespace
 
+std::vector<ContourResult> with_edges(const CadModel& cad, const ScanModel& scan,
+                                      std::vector<ContourMotion> motions, const EdgeFitOptions& options) {
+  std::vector<ContourResult> results;
+  for (std::size_t c = 0; c < motions.size(); ++c) {
+    EdgeFit edge = fit_edge(cad, c, scan, motions[c], options);
+    results.push_back({std::move(motions[c]), std::move(edge)});
+  }
+  return results;
+}
+
 Registration register_part(const CadModel& cad, ScanModel& scan, const RegistrationOptions& options) {
   Registration result;
-  result.coarse = coarse_align(cad, scan, options.coarse);
+  const bool cut = options.role == ContourRole::kCut;
+  if (cut && cad.others.empty()) {
+    result.refusals.emplace_back(
+        "role cut: the drawing has no other contour (outline, datum hole) that could tell where the part lies");
+    return result;
+  }
+  const std::optional<CadModel> by_others = cut ? std::optional(posed_by_others(cad)) : std::nullopt;
+  const CadModel& posed = cut ? *by_others : cad;
+  result.coarse = coarse_align(posed, scan, options.coarse);
   if (!result.coarse.usable()) {
     result.refusals.push_back(result.coarse.reason);
     return result;
   }
   if (result.coarse.flipped_normals) flip(scan);
   scan.side = SideKnown::kYes;
-  drop_other_loops(cad, scan, result.coarse.scan_from_cad, options.coarse.band_mm, result.loops);
+  drop_other_loops(posed, scan, result.coarse.scan_from_cad, options.coarse.band_mm, result.loops);
+  if (cut)
+    drop_edges_at(cad.contours, result.coarse.scan_from_cad, options.surface.stock_mm + kBesideStockMm, scan);
   RigidIcpOptions rigid = options.rigid;
   rigid.start_scale_mm = std::max(3.0 * result.coarse.score_mm, 4.0 * scan.spacing_mm);
-  result.rigid = icp_point_to_plane(cad, scan, result.coarse.scan_from_cad, rigid);
+  result.rigid = icp_point_to_plane(posed, scan, result.coarse.scan_from_cad, rigid);
   if (!result.rigid.usable()) {
     result.refusals.push_back(result.rigid.reason);
     return result;
   }
   double size_mm = 1.0;
-  for (const Curve& curve : cad.contours) size_mm = std::max(size_mm, curve.length_mm() / 6.28);
+  for (const Curve& curve : posed.contours) size_mm = std::max(size_mm, curve.length_mm() / 6.28);
   result.free_directions = free_directions(result.rigid.information, result.rigid.pivot_mm, size_mm);
   deform(cad, scan, options, result);
-  if (!result.usable()) return result;
+  if (!result.usable() || cut) return result;
   const RigidMotion& pose = result.rigid.scan_from_cad;
   result.stage_residual_mm.emplace_back(
       "rigid", edge_rms(cad, result.contours,
@@ -281,7 +300,7 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
         edge_rms(cad, result.contours, [&](std::size_t c, double s_mm, const Eigen::Vector3d& p) {
           return result.contours[c].motion.at(s_mm) * p;
         }));
-  result.mean_strain_ratio = stretch(cad, result.contours);
+  if (options.method != RegistrationMethod::kSurface) result.mean_strain_ratio = stretch(cad, result.contours);
   for (const ContourResult& contour : result.contours)
     result.density_per_mm2 = std::max(result.density_per_mm2, contour.edge.density_per_mm2);
   judge_coverage(cad, options, result);

@@ -26,10 +26,11 @@ struct RegistrationOptions {
   SubdivisionIcpOptions subdivision;
   SurfaceOptions surface;
   EdgeFitOptions edge;
-  bool follow_edge = true;       ///< role `edge`
+  ContourRole role = ContourRole::kEdge;
   double band_mm = 60.0;         ///< where the field speaks
   double min_seen_ratio = 0.6;   ///< of each contour's length; below it: refused
   double max_unseen_mm = 100.0;  ///< longest stretch of contour without data; above it: refused
+  double max_sd_mm = 1.0;        ///< method surface: a contour known worse than this across is refused
   int threads = 0;
 };
 
@@ -48,6 +49,11 @@ struct Registration {
   double density_per_mm2 = 0.0;
   [[nodiscard]] bool usable() const { return field != nullptr; }
 };
+
+/// The found edge of each contour relative to the nominal carried by its motion.
+[[nodiscard]] std::vector<ContourResult> with_edges(const CadModel& cad, const ScanModel& scan,
+                                                    std::vector<ContourMotion> motions,
+                                                    const EdgeFitOptions& options);
 
 /// All stages in order: start pose, rigid ICP, subdivision ICP on the scan's edge points, the edge by
 /// one-sided support, subdivision ICP again on that sharpened edge, and the edge once more. Angle-gap edge

@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "registration/carried_contour.hpp"
+
 namespace arris {
 namespace {
+
+constexpr double kSlideStepMm = 10.0;
 
 /// Nearest accepted contour; -1 when there is none.
 int nearest_contour(const CadModel& cad, const Eigen::Vector3d& p_mm, CurveFoot& foot) {
@@ -22,8 +26,8 @@ int nearest_contour(const CadModel& cad, const Eigen::Vector3d& p_mm, CurveFoot&
 
 }  // namespace
 
-SurfaceField::SurfaceField(const CadModel& cad, SurfaceFit fit, double band_mm, bool follow_edge)
-    : cad_(cad), fit_(std::move(fit)), band_mm_(band_mm), follow_edge_(follow_edge) {}
+SurfaceField::SurfaceField(const CadModel& cad, SurfaceFit fit, double band_mm, ContourRole role)
+    : cad_(cad), fit_(std::move(fit)), band_mm_(band_mm), role_(role) {}
 
 MappedPoint SurfaceField::map(const Eigen::Vector3d& p_cad_mm) const {
   MappedPoint mapped;
@@ -37,14 +41,16 @@ MappedPoint SurfaceField::map(const Eigen::Vector3d& p_cad_mm) const {
   const Eigen::Matrix3d turn = shape.rotation(row);
   const Eigen::Vector3d inward = cad_.inward(static_cast<std::size_t>(contour), beside.arc_mm);
   Eigen::Vector3d p_mm = foot.foot_mm + shape.shift_mm + turn * (p_cad_mm - foot.foot_mm);
-  if (follow_edge_) p_mm += fit_.offset_mm[static_cast<std::size_t>(contour)] * (turn * inward);
+  const bool follow = role_ == ContourRole::kEdge;
+  if (follow) p_mm += fit_.offset_mm[static_cast<std::size_t>(contour)] * (turn * inward);
   mapped.p_scan_mm = fit_.scan_from_cad * p_mm;
   mapped.rotation_scan_from_cad = fit_.scan_from_cad.linear() * turn;
   const Eigen::Vector3d tangent = inward.cross(row.normal).normalized();
   mapped.sd_mm = {sd_along_mm(row, shape.normal, -1),
-                  sd_along_mm(row, turn * inward, follow_edge_ ? contour : -1),
+                  sd_along_mm(row, turn * inward, follow ? contour : -1),
                   sd_along_mm(row, turn * tangent, -1)};
-  mapped.from_data = true;
+  mapped.sd_axis_rad = sd_tilt_rad(row, turn * inward, shape.normal);
+  mapped.from_data = seen_.empty() || seen_[static_cast<std::size_t>(contour)].at(beside.arc_mm);
   mapped.in_domain = true;
   return mapped;
 }
@@ -63,6 +69,35 @@ double SurfaceField::sd_along_mm(const BasisRow& row, const Eigen::Vector3d& dir
     variance += row.weight[a][0] * direction.dot(sum);
   }
   return std::sqrt(std::max(0.0, variance));
+}
+
+double SurfaceField::sd_tilt_rad(const BasisRow& row, const Eigen::Vector3d& inward,
+                                 const Eigen::Vector3d& normal) const {
+  // Slope of the surface across the contour: the normal part of the shift's derivative along `inward`.
+  const double along1 = row.t1.dot(inward), along2 = row.t2.dot(inward);
+  BasisRow slope = row;
+  for (BasisRow::Weights& w : slope.weight)
+    w[BasisRow::kValue] = along1 * w[BasisRow::kD1] + along2 * w[BasisRow::kD2];
+  return sd_along_mm(slope, normal, -1);
+}
+
+Eigen::Matrix3d SurfaceField::slide_covariance_mm2(std::size_t contour) const {
+  const Curve& curve = cad_.contours[contour];
+  std::vector<double> share(fit_.shift_mm.size(), 0.0);
+  const std::vector<ContourStation> stations = contour_stations(curve, *fit_.basis, kSlideStepMm);
+  for (const ContourStation& station : stations)
+    for (std::size_t k = 0; k < station.row.node.size(); ++k)
+      share[static_cast<std::size_t>(station.row.node[k])] +=
+          station.row.weight[k][BasisRow::kValue] / static_cast<double>(stations.size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (std::size_t a = 0; a < share.size(); ++a)
+    for (std::size_t b = 0; b < share.size(); ++b)
+      if (share[a] != 0.0 && share[b] != 0.0)
+        covariance += share[a] * share[b] *
+                      fit_.covariance.block<3, 3>(static_cast<Eigen::Index>(3 * a),
+                                                  static_cast<Eigen::Index>(3 * b));
+  const Eigen::Matrix3d& turn = fit_.scan_from_cad.linear();
+  return turn * covariance * turn.transpose();
 }
 
 RigidMotion SurfaceField::material_motion(std::size_t contour, double arc_mm) const {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <memory>
+#include <algorithm>
 #include <vector>
 
 #include "registration/deformation_field.hpp"
@@ -9,13 +9,25 @@
 
 namespace arris {
 
+/// Where along a contour scan points decided, in bins of kBinMm; empty: not known.
+struct SeenAlong {
+  static constexpr double kBinMm = 2.5;
+  std::vector<char> bins;
+  [[nodiscard]] bool at(double arc_mm) const {
+    if (bins.empty()) return true;
+    const auto bin = static_cast<std::size_t>(std::max(0.0, arc_mm / kBinMm));
+    return bins[std::min(bins.size() - 1, bin)] != 0;
+  }
+};
+
 /// The map of the surface field: a CAD point's foot is carried by the nodes' shifts, axes and offsets by the
 /// deformed orthonormal frame there. With role `edge` points beside a contour follow the edge that was found:
 /// its offset shifts them across. Standard deviations come from the fit's covariance.
 class SurfaceField final : public DeformationField {
  public:
   /// cad must outlive the field.
-  SurfaceField(const CadModel& cad, SurfaceFit fit, double band_mm, bool follow_edge);
+  SurfaceField(const CadModel& cad, SurfaceFit fit, double band_mm, ContourRole role);
+  void set_seen(std::vector<SeenAlong> seen) { seen_ = std::move(seen); }
 
   [[nodiscard]] MappedPoint map(const Eigen::Vector3d& p_cad_mm) const override;
   [[nodiscard]] std::string method() const override { return "surface"; }
@@ -23,14 +35,19 @@ class SurfaceField final : public DeformationField {
   [[nodiscard]] const SurfaceFit& fit() const { return fit_; }
   /// Motion of the material at a place of contour c, without the edge's own offset.
   [[nodiscard]] RigidMotion material_motion(std::size_t contour, double arc_mm) const;
+  /// Covariance of the contour's mean shift; scan frame. Large along a motion that nothing holds.
+  [[nodiscard]] Eigen::Matrix3d slide_covariance_mm2(std::size_t contour) const;
 
  private:
   [[nodiscard]] double sd_along_mm(const BasisRow& row, const Eigen::Vector3d& direction, int offset) const;
+  [[nodiscard]] double sd_tilt_rad(const BasisRow& row, const Eigen::Vector3d& inward,
+                                   const Eigen::Vector3d& normal) const;
 
   const CadModel& cad_;
   SurfaceFit fit_;
   double band_mm_;
-  bool follow_edge_;
+  ContourRole role_;
+  std::vector<SeenAlong> seen_;
 };
 
 }  // namespace arris

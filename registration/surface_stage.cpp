@@ -1,0 +1,117 @@
+#include "registration/surface_stage.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "registration/surface_field.hpp"
+
+namespace arris {
+namespace {
+
+constexpr double kMotionStepMm = 10.0;   // the field along a contour is sampled this finely
+constexpr double kJudgeStepMm = 5.0;     // and its uncertainty
+constexpr double kSlideShare = 0.5;      // of the worst variance: then the whole contour slides
+constexpr double kNearSpacings = 3.0, kNearMm = 3.0;  // a scan point this near makes a place "data"
+constexpr std::size_t kUnseenBins = 8;
+
+/// Edge of a contour that is not there yet: seen nowhere.
+EdgeFit no_edge(const Curve& curve, const EdgeFitOptions& options) {
+  ArcSpline spline(curve.length_mm(), curve.closed(), options.knot_mm);
+  const Eigen::Index n = spline.size();
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(n, n);
+  return {spline, zero, zero, zero, none, none, none, curve.length_mm() / kUnseenBins,
+          std::vector<char>(kUnseenBins, 0), 0.0, 0.0, 0};
+}
+
+std::string text_of(const Eigen::Vector3d& direction) {
+  char text[64];
+  std::snprintf(text, sizeof text, "(%.2f %.2f %.2f)", direction.x(), direction.y(), direction.z());
+  return text;
+}
+
+/// Worst standard deviation across a contour, and where.
+struct Worst {
+  double sd_mm = 0.0, arc_mm = 0.0;
+};
+Worst worst_across(const SurfaceField& field, const Curve& curve) {
+  Worst worst;
+  for (double s_mm = 0.0; s_mm < curve.length_mm(); s_mm += kJudgeStepMm) {
+    const double sd_mm = field.map(curve.point_mm(s_mm)).sd_mm.y();
+    if (sd_mm > worst.sd_mm) worst = {sd_mm, s_mm};
+  }
+  return worst;
+}
+
+void judge_place(const CadModel& cad, const SurfaceField& field, const RegistrationOptions& options,
+                 Registration& result) {
+  for (std::size_t c = 0; c < cad.contours.size(); ++c) {
+    const Worst worst = worst_across(field, cad.contours[c]);
+    if (worst.sd_mm <= options.max_sd_mm) continue;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> slide(field.slide_covariance_mm2(c));
+    const bool slides = slide.eigenvalues()[2] > kSlideShare * worst.sd_mm * worst.sd_mm;
+    const int id = cad.contours[c].contour().id;
+    char text[300];
+    if (slides) {
+      const std::string motion = "slide along " + text_of(slide.eigenvectors().col(2)) + " of the scan";
+      std::snprintf(text, sizeof text,
+                    "contour %d: nothing in the scan holds its %s: standard deviation %.1f mm, at most %.1f; "
+                    "scan an outline or datum holes of the drawing as well",
+                    id, motion.c_str(), std::sqrt(slide.eigenvalues()[2]), options.max_sd_mm);
+      result.free_directions.push_back(motion);
+    } else {
+      std::snprintf(text, sizeof text,
+                    "contour %d: its place across is not known well enough at s = %.0f mm: standard deviation "
+                    "%.1f mm, at most %.1f",
+                    id, worst.arc_mm, worst.sd_mm, options.max_sd_mm);
+    }
+    result.refusals.emplace_back(text);
+  }
+}
+
+/// Where scan points near the carried contour decided, bin by bin.
+std::vector<SeenAlong> seen_along(const CadModel& cad, const ScanModel& scan, const SurfaceField& field,
+                                  const std::vector<ContourResult>& contours, ContourRole role) {
+  std::vector<SeenAlong> seen(cad.contours.size());
+  const double near_mm = kNearSpacings * scan.spacing_mm + kNearMm;
+  for (std::size_t c = 0; c < seen.size(); ++c)
+    for (double s_mm = 0.5 * SeenAlong::kBinMm; s_mm < cad.contours[c].length_mm(); s_mm += SeenAlong::kBinMm) {
+      if (role == ContourRole::kEdge) {
+        seen[c].bins.push_back(contours[c].edge.seen_at(s_mm) ? 1 : 0);
+        continue;
+      }
+      const Eigen::Vector3d p_mm = field.material_motion(c, s_mm) * cad.contours[c].point_mm(s_mm);
+      const Neighbour nearest = scan.tree.nearest(p_mm);
+      seen[c].bins.push_back(nearest.index >= 0 && nearest.distance2_mm2 < near_mm * near_mm ? 1 : 0);
+    }
+  return seen;
+}
+
+}  // namespace
+
+void deform_by_surface(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options,
+                       Registration& result) {
+  SurfaceFit fit = refine_surface(cad, scan, result.rigid.scan_from_cad, options.surface);
+  if (!fit.usable()) {
+    result.refusals.push_back(fit.reason);
+    return;
+  }
+  result.mean_strain_ratio = fit.mean_strain_ratio;
+  auto field = std::make_shared<SurfaceField>(cad, std::move(fit), options.band_mm, options.role);
+  std::vector<ContourMotion> motions;
+  for (std::size_t c = 0; c < cad.contours.size(); ++c)
+    motions.push_back(sampled_motion(cad.contours[c], kMotionStepMm,
+                                     [&](double s_mm) { return field->material_motion(c, s_mm); }));
+  if (options.role == ContourRole::kEdge)
+    result.contours = with_edges(cad, scan, std::move(motions), options.edge);
+  else
+    for (std::size_t c = 0; c < motions.size(); ++c)
+      result.contours.push_back({std::move(motions[c]), no_edge(cad.contours[c], options.edge)});
+  field->set_seen(seen_along(cad, scan, *field, result.contours, options.role));
+  judge_place(cad, *field, options, result);
+  result.field = std::move(field);
+}
+
+}  // namespace arris
