@@ -1,0 +1,108 @@
+#include <gtest/gtest.h>
+
+#include "tests/registration/scenes.hpp"
+
+namespace arris {
+namespace {
+
+using scenes::Trial;
+using synthetic::PlatePart;
+
+synthetic::PlateShape bent_plate() {
+  synthetic::PlateShape shape = synthetic::asymmetric_plate();
+  shape.bend_curvature_per_mm = 1.5e-4;
+  shape.bend_axis_rad = 0.3;
+  return shape;
+}
+
+/// The part as it comes: without the opening that the tool is to cut.
+PlatePart uncut() {
+  synthetic::PlateShape shape = bent_plate();
+  shape.holes.erase(shape.holes.begin());
+  return PlatePart(shape);
+}
+
+RegistrationOptions cut_options(const PlatePart& part) {
+  RegistrationOptions options;
+  options.method = RegistrationMethod::kSurface;
+  options.role = options.surface.role = ContourRole::kCut;
+  options.surface.prior.thickness_mm = part.shape().thickness_mm;
+  return options;
+}
+
+synthetic::ScanOptions whole_face(std::int64_t points) {
+  synthetic::ScanOptions scan;
+  scan.points = points;
+  scan.band_mm = 0.0;
+  return scan;
+}
+
+TEST(RoleCut, TakesItsPlaceFromOutlineAndDatumHoles) {
+  const PlatePart drawn(bent_plate()), real = uncut();
+  const CadModel cad = scenes::cad_of(drawn);
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    Trial trial = scenes::trial_of(real, whole_face(8000), seed);
+    const Registration found = register_part(cad, trial.scan, cut_options(drawn));
+    ASSERT_TRUE(found.usable()) << (found.refusals.empty() ? "" : found.refusals.front());
+    EXPECT_TRUE(found.refusals.empty()) << found.refusals.front();
+    double sum_mm = 0.0, worst_mm = 0.0, count = 0.0;
+    for (const synthetic::EdgePoint& edge : drawn.edge(0, 5.0)) {
+      const MappedPoint mapped = found.field->map(edge.nominal_mm);
+      const double off_mm = (mapped.p_scan_mm - trial.scan_from_cad * edge.true_mm).norm();
+      EXPECT_TRUE(mapped.from_data);
+      sum_mm += off_mm;
+      count += 1.0;
+      worst_mm = std::max(worst_mm, off_mm);
+    }
+    EXPECT_LT(sum_mm / count, 0.3);
+    EXPECT_LT(worst_mm, 0.6);
+  }
+}
+
+TEST(RoleCut, ARoughOpeningWithStockIsNoData) {
+  // A hole 4 mm too small, and off centre by 2 mm, stands where the tool will cut: the answer stays.
+  synthetic::PlateShape rough = bent_plate();
+  for (double* half : {&rough.holes[0].half_x_mm, &rough.holes[0].half_y_mm}) *half -= 4.0;
+  rough.holes[0].corner_radius_mm -= 4.0;
+  rough.holes[0].centre_mm.x() += 2.0;
+  const PlatePart drawn(bent_plate()), real(rough);
+  const CadModel cad = scenes::cad_of(drawn);
+  RegistrationOptions options = cut_options(drawn);
+  options.surface.stock_mm = 6.0;
+  Trial trial = scenes::trial_of(real, whole_face(8000), 3);
+  const Registration found = register_part(cad, trial.scan, options);
+  ASSERT_TRUE(found.usable()) << (found.refusals.empty() ? "" : found.refusals.front());
+  EXPECT_TRUE(found.refusals.empty()) << found.refusals.front();
+  double sum_mm = 0.0, count = 0.0;
+  for (const synthetic::EdgePoint& edge : drawn.edge(0, 5.0)) {
+    sum_mm += (found.field->map(edge.nominal_mm).p_scan_mm - trial.scan_from_cad * edge.true_mm).norm();
+    count += 1.0;
+  }
+  EXPECT_LT(sum_mm / count, 0.3);
+}
+
+TEST(RoleCut, ASlideThatNothingHoldsIsRefusedAndNamed) {
+  // Points of the middle of the plate only: no outline, no hole, and a plate slides on itself.
+  const PlatePart drawn(bent_plate());
+  synthetic::PlateShape plain = bent_plate();
+  plain.holes.clear();
+  const CadModel cad = scenes::cad_of(drawn);
+  const Trial whole = scenes::ideal_trial(PlatePart(plain), {.points = 6000, .band_mm = 0.0}, 4);
+  std::vector<Eigen::Vector3d> points, normals;
+  for (std::size_t i = 0; i < whole.scan.points_mm.size(); ++i)
+    if (std::abs(whole.scan.points_mm[i].x()) < 90.0 && std::abs(whole.scan.points_mm[i].y()) < 70.0) {
+      points.push_back(whole.scan.points_mm[i]);
+      normals.push_back(whole.scan.normals[i]);
+    }
+  ScanModel scan{points, normals, NearestPoints(points), {}, {}, {}, whole.scan.spacing_mm, 0.05, SideKnown::kYes};
+  RegistrationOptions options = cut_options(drawn);
+  options.coarse.initial_scan_from_cad = RigidMotion::Identity();
+  const Registration found = register_part(cad, scan, options);
+  ASSERT_FALSE(found.refusals.empty());
+  const std::string& why = found.refusals.back();
+  EXPECT_TRUE(why.find("slide along") != std::string::npos || why.find("not known well enough") != std::string::npos)
+      << why;
+}
+
+}  // namespace
+}  // namespace arris

@@ -1,0 +1,159 @@
+#include "registration/surface_refine.hpp"
+
+#include <gtest/gtest.h>
+
+#include "registration/surface_field.hpp"
+#include "tests/registration/scenes.hpp"
+
+namespace arris {
+namespace {
+
+using scenes::Trial;
+using synthetic::PlatePart;
+
+synthetic::PlateShape bent(double curvature_per_mm) {
+  synthetic::PlateShape shape = synthetic::plate_with_rounded_rectangle();
+  shape.bend_curvature_per_mm = curvature_per_mm;
+  shape.bend_axis_rad = 0.4;
+  return shape;
+}
+
+SurfaceOptions options_for(const PlatePart& part) {
+  SurfaceOptions options;
+  options.prior.thickness_mm = part.shape().thickness_mm;
+  options.band_mm = 50.0;
+  return options;
+}
+
+scenes::Distance error_of(const CadModel& cad, const Trial& trial, const SurfaceField& field) {
+  return scenes::distance_between(
+      scenes::carried(cad.contours[0], 2.0,
+                      [&](double, const Eigen::Vector3d& p) { return field.map(p).p_scan_mm; }),
+      trial.true_curve_mm);
+}
+
+SurfaceField fitted(const CadModel& cad, const Trial& trial, const SurfaceOptions& options,
+                    const RigidMotion& start) {
+  return {cad, refine_surface(cad, trial.scan, start, options), options.band_mm, options.role};
+}
+
+TEST(SurfaceField, FollowsABentPlateToASmallPartOfTheEdgeLimit) {
+  const PlatePart part(bent(2e-4));
+  const CadModel cad = scenes::cad_of(part);
+  const Trial trial = scenes::ideal_trial(part, {}, 3);
+  const SurfaceField field = fitted(cad, trial, options_for(part), RigidMotion::Identity());
+  ASSERT_TRUE(field.fit().usable()) << field.fit().reason;
+  EXPECT_EQ(field.fit().stop, "converged");
+  const scenes::Distance error = error_of(cad, trial, field);
+  EXPECT_LT(error.mean_mm, 0.35 * trial.edge_limit_mm);
+  EXPECT_LT(error.max_mm, 1.0 * trial.edge_limit_mm);
+}
+
+TEST(SurfaceField, DoesNotInventADeformation) {
+  const PlatePart part(bent(0.0));
+  const CadModel cad = scenes::cad_of(part);
+  const Trial trial = scenes::ideal_trial(part, {}, 4);
+  const SurfaceField field = fitted(cad, trial, options_for(part), RigidMotion::Identity());
+  for (double s_mm = 0.0; s_mm < cad.contours[0].length_mm(); s_mm += 10.0) {
+    const Eigen::Vector3d p = cad.contours[0].point_mm(s_mm);
+    EXPECT_LT(std::abs((field.map(p).p_scan_mm - p).z()), 0.06);
+    EXPECT_LT((field.map(p).p_scan_mm - p).norm(), trial.edge_limit_mm);
+  }
+}
+
+TEST(SurfaceField, CarriesAPatchThatWasNotScannedByTheStiffnessOfTheSheet) {
+  const PlatePart part(bent(2e-4));
+  const CadModel cad = scenes::cad_of(part);
+  Trial trial = scenes::ideal_trial(part, {}, 5);
+  const Eigen::Vector3d hole = trial.true_curve_mm[trial.true_curve_mm.size() / 3];
+  ScanModel& scan = trial.scan;
+  std::vector<Eigen::Vector3d> points, normals;
+  for (std::size_t i = 0; i < scan.points_mm.size(); ++i)
+    if ((scan.points_mm[i] - hole).norm() > 35.0) {
+      points.push_back(scan.points_mm[i]);
+      normals.push_back(scan.normals[i]);
+    }
+  scan.points_mm = points;
+  scan.normals = normals;
+  scan.tree = NearestPoints(scan.points_mm);
+  const SurfaceField field = fitted(cad, trial, options_for(part), RigidMotion::Identity());
+  const scenes::Distance error = error_of(cad, trial, field);
+  EXPECT_LT(error.max_mm, 1.5 * trial.edge_limit_mm);
+}
+
+TEST(SurfaceField, AHoleThatIsTooLargeIsFollowedAndItsSizeReported) {
+  synthetic::PlateShape drawn = bent(1e-4), moulded = drawn;
+  moulded.holes[0].half_x_mm += 0.6;
+  moulded.holes[0].half_y_mm += 0.6;
+  moulded.holes[0].corner_radius_mm += 0.6;
+  const PlatePart nominal(drawn), real(moulded);
+  const CadModel cad = scenes::cad_of(nominal);
+  scenes::IdealOptions dense;
+  dense.points = 40000;
+  const Trial trial = scenes::ideal_trial(real, dense, 6);
+  const SurfaceField field = fitted(cad, trial, options_for(nominal), RigidMotion::Identity());
+  EXPECT_NEAR(field.fit().offset_mm[0], 0.6, 0.05);  // the edge lies inside the drawing's material
+  EXPECT_LT(error_of(cad, trial, field).mean_mm, 0.05);
+}
+
+TEST(SurfaceField, MovingTheScanMovesTheAnswerAndNothingElse) {
+  const PlatePart part(bent(2e-4));
+  const CadModel cad = scenes::cad_of(part);
+  const Trial trial = scenes::ideal_trial(part, {}, 7);
+  const SurfaceField plain = fitted(cad, trial, options_for(part), RigidMotion::Identity());
+  synthetic::Random random(3);
+  const RigidMotion motion = scenes::disturbance(random, {0, 0, 0}, 1.0, 5000.0);
+  const Trial far{scenes::moved(trial.scan, motion), motion, {}, trial.edge_limit_mm};
+  const SurfaceField moved = fitted(cad, far, options_for(part), motion);
+  for (double s_mm = 0.0; s_mm < cad.contours[0].length_mm(); s_mm += 20.0) {
+    const Eigen::Vector3d p = cad.contours[0].point_mm(s_mm);
+    EXPECT_LT((motion.inverse() * moved.map(p).p_scan_mm - plain.map(p).p_scan_mm).norm(), 1e-6);
+  }
+}
+
+TEST(SurfaceField, SameBytesForAnyThreadCount) {
+  const PlatePart part(bent(2e-4));
+  const CadModel cad = scenes::cad_of(part);
+  const Trial trial = scenes::ideal_trial(part, {}, 8);
+  SurfaceOptions options = options_for(part);
+  options.max_rounds = 4;
+  options.threads = 1;
+  const std::vector<double> one = fitted(cad, trial, options, RigidMotion::Identity()).parameters();
+  for (const int threads : {2, 8}) {
+    options.threads = threads;
+    EXPECT_EQ(one, fitted(cad, trial, options, RigidMotion::Identity()).parameters()) << threads;
+  }
+}
+
+TEST(SurfaceField, StatesHowFarItMayBeOff) {
+  const PlatePart part(bent(2e-4));
+  const CadModel cad = scenes::cad_of(part);
+  int inside_normal = 0, inside_across = 0, count = 0;
+  for (std::uint64_t seed = 20; seed < 28; ++seed) {
+    const Trial trial = scenes::ideal_trial(part, {}, seed);
+    const SurfaceField field = fitted(cad, trial, options_for(part), RigidMotion::Identity());
+    for (const synthetic::EdgePoint& edge : part.edge(0, 25.0)) {
+      const MappedPoint mapped = field.map(edge.nominal_mm);
+      const Eigen::Vector3d off = mapped.p_scan_mm - edge.true_mm;
+      inside_normal += std::abs(off.dot(edge.true_normal)) < 1.96 * mapped.sd_mm.x() ? 1 : 0;
+      inside_across += std::abs(off.dot(edge.true_void)) < 1.96 * mapped.sd_mm.y() ? 1 : 0;
+      ++count;
+    }
+  }
+  EXPECT_GT(inside_normal, 0.8 * count);
+  EXPECT_GT(inside_across, 0.8 * count);
+}
+
+TEST(SurfaceOptions, RefusesNonsenseByName) {
+  SurfaceOptions options;
+  options.node_spacing_mm = 0.0;
+  try {
+    options.check();
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("node_spacing_mm"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace arris
