@@ -36,9 +36,11 @@ void check_together(const std::filesystem::path& file, const Recipe& recipe,
            {},
            "remove it from contour.accept or contour.reject"});
   if (recipe.contour.role == "cut" && recipe.registration.method != "surface")
-    add({"role = \"cut\" needs the surface field", where("registration"),
+    add({"role = \"cut\" needs the surface field",
+         where("registration"),
          "method = \"" + recipe.registration.method + "\", which follows edges that are not there yet",
-         "method = \"surface\"", {}});
+         "method = \"surface\"",
+         {}});
   if (recipe.contour.stock_mm > 0.0 && recipe.contour.role == "edge")
     add({"contour.stock_mm belongs to role = \"cut\"",
          where("contour"),

@@ -59,6 +59,14 @@ void judge_shape(RunRecord& record) {
   }
 }
 
+std::string what_is_judged(const std::string& method) {
+  if (method == "rigid") return "found edge against the nominal carried rigidly";
+  if (method == "surface") return "found edge against the nominal carried by the surface field";
+  return "found edge against the nominal carried by the segments (an error longer than a segment is "
+         "followed, "
+         "and not seen here)";
+}
+
 void judge_edge(const Registration& found, RunRecord& record) {
   std::vector<double> across_mm;
   for (const ContourError& error : record.contour_errors)
@@ -66,16 +74,17 @@ void judge_edge(const Registration& found, RunRecord& record) {
   record.pulled_back =
       report::deviation_statistics(std::span<const double>(across_mm), record.contour_profile_mm);
   const double largest_mm = report::max_abs_mm(record.pulled_back);
-  const std::string what =
-      record.method == "rigid"
-          ? "found edge against the nominal carried rigidly"
-          : "found edge against the nominal carried by the segments (an error longer than a "
-            "segment is followed, and not seen here)";
+  if (record.role == "cut") {
+    record.judged_pulled_back =
+        report::not_judged(0.0, record.contour_profile_mm, "role cut: the tool makes the contour");
+    return;
+  }
   record.judged_pulled_back =
-      record.state == "free" ? report::not_judged(largest_mm, record.contour_profile_mm,
-                                                  "the edge's own error, shown; the free shape is judged")
-                             : report::judge_profile(largest_mm, record.contour_profile_mm,
-                                                     2.0 * kExpanded * worst_edge_sd_mm(found), what);
+      record.state == "free"
+          ? report::not_judged(largest_mm, record.contour_profile_mm,
+                               "the edge's own error, shown; the free shape is judged")
+          : report::judge_profile(largest_mm, record.contour_profile_mm,
+                                  2.0 * kExpanded * worst_edge_sd_mm(found), what_is_judged(record.method));
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ std::optional<fs::path> cell_file(const RunArgs& args, const Recipe& recipe) {
 std::optional<Cell> read_cell_for(const RunArgs& args, const Recipe& recipe) {
   const std::optional<fs::path> file = cell_file(args, recipe);
   std::optional<Cell> cell;
+  if (args.inspect_only && file && !args.cell && !fs::exists(*file)) return cell;  // it needs no cell
   if (file) cell = read_cell(*file);
   if (args.inspect_only && cell && cell->targets.empty()) cell.reset();
   if (args.targets && (!cell || cell->targets.empty()))

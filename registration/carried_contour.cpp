@@ -19,15 +19,13 @@ double fan_at(const Curve& curve, double arc_mm) {
 
 }  // namespace
 
-std::vector<ContourStation> contour_stations(const Curve& curve, const SurfaceBasis& basis,
-                                             double step_mm) {
+std::vector<ContourStation> contour_stations(const Curve& curve, const SurfaceBasis& basis, double step_mm) {
   std::vector<ContourStation> stations;
   const std::size_t points = curve.contour().points_mm.size();
   const std::size_t chords = curve.closed() ? points : points - 1;
   for (std::size_t i = 0; i < chords; ++i) {
     const double begin_mm = curve.arc_of_point_mm(static_cast<int>(i));
-    const double end_mm =
-        i + 1 < points ? curve.arc_of_point_mm(static_cast<int>(i + 1)) : curve.length_mm();
+    const double end_mm = i + 1 < points ? curve.arc_of_point_mm(static_cast<int>(i + 1)) : curve.length_mm();
     const int parts = std::max(1, static_cast<int>(std::ceil((end_mm - begin_mm) / step_mm)));
     for (int k = 0; k < parts; ++k) {
       ContourStation station;

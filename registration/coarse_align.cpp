@@ -286,7 +286,7 @@ CoarseAlignment from_initial(const ScanModel& scan, const CoarseAlignOptions& op
   const double turned = rotation_between_rad(*options.initial_scan_from_cad, best.scan_from_cad);
   if (turned > options.within_rad)
     result.reason = "the data turn the part by more than the initial pose allows (within_deg)";
-  else if (best.score_mm > kInitialFitsRatio * search.size_mm())
+  else if (options.edges_needed && best.score_mm > kInitialFitsRatio * search.size_mm())
     result.reason = "the initial pose does not fit: the scan's edge stays " + millimetres(best.score_mm) +
                     " mm from the contours";
   return result;

@@ -12,8 +12,10 @@ namespace arris {
 /// Options of coarse_align().
 struct CoarseAlignOptions {
   std::optional<RigidMotion> initial_scan_from_cad;  ///< given by the recipe: no search, only checked
-  double within_rad = 0.52;       ///< an initial pose that the data turn by more is refused
-  double band_mm = 60.0;          ///< surface that takes part, around the contours
+  double within_rad = 0.52;  ///< an initial pose that the data turn by more is refused
+  double band_mm = 60.0;     ///< surface that takes part, around the contours
+  bool edges_needed =
+      true;  ///< false: an initial pose is taken though the scan shows no contour of the drawing
   double ambiguity_ratio = 1.15;  ///< runner-up's score over the best's below this: refused
   int threads = 0;
 };

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStationMm = 2.0;
 constexpr double kPointsPerBin = 8.0;
-constexpr double kLeastExpectedRatio = 0.5;  // of the scan's median density, beside the edge
+constexpr double kLeastExpectedRatio = 0.5;           // of the scan's median density, beside the edge
 constexpr double kEmptyRatio = 0.2, kRimRatio = 0.6;  // of the usual count: not seen; beside a gap
 constexpr double kTauFloorMm = 0.03;
 constexpr std::size_t kChunk = 256;
@@ -76,7 +76,8 @@ void EdgeStrips::find_seen(std::size_t e) {
   double count = 0.0;
   for (const Point& p : points_)
     if (p.edge == e) count += p.weight;
-  edge.bin_mm = std::clamp(kPointsPerBin / std::max(expected_per_mm, count / length_mm), 2.0, length_mm / 8.0);
+  edge.bin_mm =
+      std::clamp(kPointsPerBin / std::max(expected_per_mm, count / length_mm), 2.0, length_mm / 8.0);
   const std::size_t bins = static_cast<std::size_t>(length_mm / edge.bin_mm);
   edge.bin_mm = length_mm / static_cast<double>(bins);
   edge.seen.assign(bins, 1);
@@ -123,7 +124,8 @@ void EdgeStrips::add(std::size_t begin, std::size_t end, const std::vector<doubl
 double EdgeStrips::finest_tau_mm(double share_ratio) const {
   double tau_mm = kTauFloorMm;
   for (const Edge& edge : edges_)
-    tau_mm = std::max(tau_mm, 1.0 / std::max(1e-9, edge.density_per_mm2 * share_ratio * edge.curve->length_mm()));
+    tau_mm =
+        std::max(tau_mm, 1.0 / std::max(1e-9, edge.density_per_mm2 * share_ratio * edge.curve->length_mm()));
   return tau_mm;
 }
 

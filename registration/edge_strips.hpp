@@ -26,7 +26,8 @@ class EdgeStrips {
     double weight = 0.0;  ///< undoes the fan of a bent contour; 0: no point of a strip
   };
   [[nodiscard]] const std::vector<Point>& points() const { return points_; }
-  /// Adds points [begin, end): offset_mm is how far each edge lies inside the material of the carried nominal.
+  /// Adds points [begin, end): offset_mm is how far each edge lies inside the material of the carried
+  /// nominal.
   void add(std::size_t begin, std::size_t end, const std::vector<double>& offset_mm, double tau_mm,
            double stray_ratio, SurfaceSystem& system) const;
 

@@ -5,8 +5,8 @@
 namespace arris {
 
 /// One-sided support of an edge: scan points lie on its material side, with a density that is uniform near
-/// it. A point at distance g inside the edge costs -log sigmoid(g / tau - 0.541), and each point of a strip of
-/// width w pulls the edge inward by 1 / w, its share of the density: with log(1 + exp(0.541)) = 1 the two
+/// it. A point at distance g inside the edge costs -log sigmoid(g / tau - 0.541), and each point of a strip
+/// of width w pulls the edge inward by 1 / w, its share of the density: with log(1 + exp(0.541)) = 1 the two
 /// balance without bias for a uniform density at any tau. Points far outside are strays, and let go.
 struct EdgeSupport {
   static constexpr double kBalance = 0.541;

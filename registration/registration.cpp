@@ -242,8 +242,8 @@ void deform(const CadModel& cad, const ScanModel& scan, const RegistrationOption
     earlier = moved;
     result.contours = with_edges(cad, scan, std::move(moved), options.edge);
   }
-  result.field =
-      std::make_shared<SubdivisionField>(cad, result.contours, options.band_mm, options.role == ContourRole::kEdge);
+  result.field = std::make_shared<SubdivisionField>(cad, result.contours, options.band_mm,
+                                                    options.role == ContourRole::kEdge);
 }
 
 }  // namespace
@@ -263,12 +263,15 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   const bool cut = options.role == ContourRole::kCut;
   if (cut && cad.others.empty()) {
     result.refusals.emplace_back(
-        "role cut: the drawing has no other contour (outline, datum hole) that could tell where the part lies");
+        "role cut: the drawing has no other contour (outline, datum hole) that could tell where the part "
+        "lies");
     return result;
   }
   const std::optional<CadModel> by_others = cut ? std::optional(posed_by_others(cad)) : std::nullopt;
   const CadModel& posed = cut ? *by_others : cad;
-  result.coarse = coarse_align(posed, scan, options.coarse);
+  CoarseAlignOptions coarse = options.coarse;
+  coarse.edges_needed = !cut;  // what holds the part is judged at the end, by the field's covariance
+  result.coarse = coarse_align(posed, scan, coarse);
   if (!result.coarse.usable()) {
     result.refusals.push_back(result.coarse.reason);
     return result;
@@ -300,7 +303,8 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
         edge_rms(cad, result.contours, [&](std::size_t c, double s_mm, const Eigen::Vector3d& p) {
           return result.contours[c].motion.at(s_mm) * p;
         }));
-  if (options.method != RegistrationMethod::kSurface) result.mean_strain_ratio = stretch(cad, result.contours);
+  if (options.method != RegistrationMethod::kSurface)
+    result.mean_strain_ratio = stretch(cad, result.contours);
   for (const ContourResult& contour : result.contours)
     result.density_per_mm2 = std::max(result.density_per_mm2, contour.edge.density_per_mm2);
   judge_coverage(cad, options, result);

@@ -20,7 +20,7 @@ enum class RegistrationMethod { kRigid, kSubdivision, kSurface };
 
 /// Everything the recipe may choose about registration.
 struct RegistrationOptions {
-  RegistrationMethod method = RegistrationMethod::kSubdivision;
+  RegistrationMethod method = RegistrationMethod::kSurface;
   CoarseAlignOptions coarse;
   RigidIcpOptions rigid;
   SubdivisionIcpOptions subdivision;

@@ -16,8 +16,8 @@ Eigen::Vector3d CadModel::smooth_normal(const SurfacePoint& foot) const {
   const auto& corners = mesh.triangles[static_cast<std::size_t>(foot.triangle)];
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < 3; ++k)
-    normal += foot.barycentric[static_cast<Eigen::Index>(k)] *
-              vertex_normals[static_cast<std::size_t>(corners[k])];
+    normal +=
+        foot.barycentric[static_cast<Eigen::Index>(k)] * vertex_normals[static_cast<std::size_t>(corners[k])];
   return normal.normalized();
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRadiusSpacings = 2.4;
 constexpr double kCosSameSheet = 0.2;
-constexpr double kQuadraticRidge = 1e-5;  // of the moment matrix, on the second-order terms only
+constexpr double kQuadraticRidge = 1e-6;  // of the moment matrix, on the second-order terms only
 constexpr double kWorstPivotRatio = 1e-9;
 constexpr std::size_t kFewestNodes = 6;
 

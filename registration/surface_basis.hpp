@@ -51,7 +51,7 @@ class SurfaceBasis {
   double spacing_mm_, radius_mm_;
   Eigen::Vector3d low_mm_ = Eigen::Vector3d::Zero();
   Eigen::Array3i count_ = Eigen::Array3i::Ones();
-  std::vector<std::uint32_t> start_;   // of each grid cell into order_
+  std::vector<std::uint32_t> start_;  // of each grid cell into order_
   std::vector<std::int32_t> order_;
 };
 

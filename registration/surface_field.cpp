@@ -46,8 +46,7 @@ MappedPoint SurfaceField::map(const Eigen::Vector3d& p_cad_mm) const {
   mapped.p_scan_mm = fit_.scan_from_cad * p_mm;
   mapped.rotation_scan_from_cad = fit_.scan_from_cad.linear() * turn;
   const Eigen::Vector3d tangent = inward.cross(row.normal).normalized();
-  mapped.sd_mm = {sd_along_mm(row, shape.normal, -1),
-                  sd_along_mm(row, turn * inward, follow ? contour : -1),
+  mapped.sd_mm = {sd_along_mm(row, shape.normal, -1), sd_along_mm(row, turn * inward, follow ? contour : -1),
                   sd_along_mm(row, turn * tangent, -1)};
   mapped.sd_axis_rad = sd_tilt_rad(row, turn * inward, shape.normal);
   mapped.from_data = seen_.empty() || seen_[static_cast<std::size_t>(contour)].at(beside.arc_mm);
@@ -93,9 +92,9 @@ Eigen::Matrix3d SurfaceField::slide_covariance_mm2(std::size_t contour) const {
   for (std::size_t a = 0; a < share.size(); ++a)
     for (std::size_t b = 0; b < share.size(); ++b)
       if (share[a] != 0.0 && share[b] != 0.0)
-        covariance += share[a] * share[b] *
-                      fit_.covariance.block<3, 3>(static_cast<Eigen::Index>(3 * a),
-                                                  static_cast<Eigen::Index>(3 * b));
+        covariance +=
+            share[a] * share[b] *
+            fit_.covariance.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
   const Eigen::Matrix3d& turn = fit_.scan_from_cad.linear();
   return turn * covariance * turn.transpose();
 }

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kCosSameSheet = 0.2;    // a node serves cells whose normal turns less than this
 constexpr double kCoverRatio = 0.75;     // of the spacing: how far a cell may be from its node
+constexpr double kInvertedShare = 0.05;  // of a cube's area: less faces the other way by mistake
 constexpr std::size_t kMostCells = 1000000;
 
 double to_contours_mm(const CadModel& cad, const Eigen::Vector3d& p_mm) {
@@ -80,20 +81,46 @@ void add_contour_nodes(const Curve& curve, double spacing_mm, SurfaceNodes& node
   }
 }
 
+std::array<int, 3> cube_of(const Eigen::Vector3d& p_mm, double cell_mm) {
+  const Eigen::Array3i at = (p_mm / cell_mm).array().floor().cast<int>();
+  return {at.x(), at.y(), at.z()};
+}
+
+/// Meshers leave slivers that face the wrong way at corners; a small part of a cube's area that is turned
+/// from the rest is one. (Two faces of a thin solid share a cube too, but evenly.)
+void drop_inverted_slivers(double cell_mm, std::vector<SurfaceCell>& cells) {
+  std::map<std::array<int, 3>, Eigen::Vector3d> facing;
+  std::map<std::array<int, 3>, double> against_mm2, area_mm2;
+  for (const SurfaceCell& cell : cells)
+    facing.try_emplace(cube_of(cell.centre_mm, cell_mm), Eigen::Vector3d::Zero()).first->second +=
+        cell.area_mm2 * cell.normal;
+  const auto turned = [&](const SurfaceCell& cell) {
+    return cell.normal.dot(facing[cube_of(cell.centre_mm, cell_mm)]) <= 0.0;
+  };
+  for (const SurfaceCell& cell : cells) {
+    area_mm2[cube_of(cell.centre_mm, cell_mm)] += cell.area_mm2;
+    if (turned(cell)) against_mm2[cube_of(cell.centre_mm, cell_mm)] += cell.area_mm2;
+  }
+  std::erase_if(cells, [&](const SurfaceCell& cell) {
+    const std::array<int, 3> cube = cube_of(cell.centre_mm, cell_mm);
+    return turned(cell) && against_mm2[cube] < kInvertedShare * area_mm2[cube];
+  });
+}
+
 }  // namespace
 
 std::vector<SurfaceCell> band_cells(const CadModel& cad, double band_mm, double cell_mm) {
   CellMaker maker(cad, band_mm, cell_mm);
   for (std::size_t t = 0; t < cad.mesh.triangles.size(); ++t) maker.add(t);
+  drop_inverted_slivers(2.0 * cell_mm, maker.cells);
   return std::move(maker.cells);
 }
 
 std::vector<SurfaceCell> thinned(const std::vector<SurfaceCell>& cells, double cell_mm) {
-  std::map<std::array<int, 6>, std::vector<std::size_t>> cubes;
+  std::map<std::array<std::array<int, 3>, 2>, std::vector<std::size_t>> cubes;  // place and side
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const Eigen::Array3i at = (cells[i].centre_mm / cell_mm).array().floor().cast<int>();
     const Eigen::Array3i side = (cells[i].normal * 1.5).array().round().cast<int>();
-    cubes[{at.x(), at.y(), at.z(), side.x(), side.y(), side.z()}].push_back(i);
+    cubes[{cube_of(cells[i].centre_mm, cell_mm), {side.x(), side.y(), side.z()}}].push_back(i);
   }
   std::vector<SurfaceCell> fewer;
   for (const auto& [cube, members] : cubes) {
@@ -104,9 +131,11 @@ std::vector<SurfaceCell> thinned(const std::vector<SurfaceCell>& cells, double c
       area_mm2 += cells[i].area_mm2;
     }
     middle_mm /= area_mm2;
-    const std::size_t best = *std::min_element(members.begin(), members.end(), [&](std::size_t a, std::size_t b) {
-      return (cells[a].centre_mm - middle_mm).squaredNorm() < (cells[b].centre_mm - middle_mm).squaredNorm();
-    });
+    const std::size_t best =
+        *std::min_element(members.begin(), members.end(), [&](std::size_t a, std::size_t b) {
+          return (cells[a].centre_mm - middle_mm).squaredNorm() <
+                 (cells[b].centre_mm - middle_mm).squaredNorm();
+        });
     fewer.push_back(cells[best]);
     fewer.back().area_mm2 = area_mm2;
   }

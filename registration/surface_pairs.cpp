@@ -18,8 +18,8 @@ bool normals_agree(const ScanModel& scan, const Eigen::Vector3d& deformed, const
   return (scan.side == SideKnown::kYes ? cosine : std::abs(cosine)) > kCosNormalsAgree;
 }
 
-void find_partner(const CadModel& cad, const SurfaceBasis& basis, const std::vector<Eigen::Vector3d>& shift_mm,
-                  double reach_mm, SurfacePair& pair) {
+void find_partner(const CadModel& cad, const SurfaceBasis& basis,
+                  const std::vector<Eigen::Vector3d>& shift_mm, double reach_mm, SurfacePair& pair) {
   pair.on_face = false;
   pair.row = {};
   const SurfacePoint foot = cad.surface.closest(pair.p_mm - pair.guess_mm, reach_mm);
@@ -91,8 +91,8 @@ void add_surface(const std::vector<SurfacePair>& pairs, std::size_t begin, std::
     row.direction.clear();
     for (const BasisRow::Weights& w : pair.row.weight)
       row.direction.push_back(w[BasisRow::kValue] * pair.normal);
-    const double weight = geman_mcclure_weight(pair.residual_mm * pair.residual_mm, scale_mm) /
-                          (sigma_mm * sigma_mm);
+    const double weight =
+        geman_mcclure_weight(pair.residual_mm * pair.residual_mm, scale_mm) / (sigma_mm * sigma_mm);
     system.add(row, -weight * pair.residual_mm, weight);
   }
 }

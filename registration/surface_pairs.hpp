@@ -12,11 +12,11 @@ namespace arris {
 
 /// One scan point and its partner on the deformed CAD; CAD frame.
 struct SurfacePair {
-  BasisRow row;                                       ///< at the partner's nominal place
-  Eigen::Vector3d p_mm = Eigen::Vector3d::Zero();     ///< the scan point
+  BasisRow row;                                        ///< at the partner's nominal place
+  Eigen::Vector3d p_mm = Eigen::Vector3d::Zero();      ///< the scan point
   Eigen::Vector3d guess_mm = Eigen::Vector3d::Zero();  ///< shift at the last partner: where to look next
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< deformed
-  double residual_mm = 0.0;                           ///< out of the material
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();   ///< deformed
+  double residual_mm = 0.0;                            ///< out of the material
   bool on_face = false;  ///< the partner lies on the face, not on its rim, and the normals agree
 };
 

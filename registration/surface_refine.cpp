@@ -15,13 +15,14 @@ namespace {
 constexpr double kAnneal = 0.6, kScaleSigmas = 4.0, kGateSigmas = 4.0;
 constexpr double kStartTauMm = 2.0, kTauShrink = 0.6;
 constexpr double kStrayRatio = 5e-3, kStrayRatioPerMm = 0.01, kMostStrayRatio = 0.05;  // grow with the gate
-constexpr double kFineCellRatio = 0.4, kCellRatio = 0.6;  // of the node spacing: to place nodes; of the priors
+constexpr double kFineCellRatio = 0.4,
+                 kCellRatio = 0.6;  // of the node spacing: to place nodes; of the priors
 constexpr std::size_t kMostNodes = 400;
-constexpr double kGaugeMm = 50.0;     // weak pull to the rigid start, for motions that nothing else holds
-constexpr double kProximalMm = 5.0;   // a round's moves along such motions stay small
+constexpr double kGaugeMm = 50.0;    // weak pull to the rigid start, for motions that nothing else holds
+constexpr double kProximalMm = 5.0;  // a round's moves along such motions stay small
 constexpr double kSettledMm = 1e-3, kSettledEdgeLimits = 0.01;  // moves of a round that no longer matter
-constexpr double kUnknownThicknessWiden = 2.0;  // the mid-surface's strain is then not known
-constexpr std::size_t kParts = 8;               // each list is added up in this many chunks
+constexpr double kUnknownThicknessWiden = 2.0;                  // the mid-surface's strain is then not known
+constexpr std::size_t kParts = 8;                               // each list is added up in this many chunks
 
 double area_mm2_of(const std::vector<SurfaceCell>& cells) {
   double area_mm2 = 0.0;
@@ -46,8 +47,8 @@ class SurfaceFitter {
     fit_.shift_mm.assign(fit_.basis->size(), Eigen::Vector3d::Zero());
     fit_.offset_mm.assign(edges_.size(), 0.0);
     const double reach_mm = options.band_mm + options.start_scale_mm + 3.0 * scan.spacing_mm;
-    points_ = points_near(cad, scan, rigid, options.role == ContourRole::kCut ? -1.0 : reach_mm,
-                          options.threads);
+    points_ =
+        points_near(cad, scan, rigid, options.role == ContourRole::kCut ? -1.0 : reach_mm, options.threads);
   }
 
   SurfaceFit run() {
@@ -104,8 +105,7 @@ class SurfaceFitter {
   void look() {
     pair_surface(cad_, scan_, points_, fit_.scan_from_cad, *fit_.basis, fit_.shift_mm,
                  4.0 * options_.start_scale_mm + 10.0, options_.threads, pairs_);
-    fit_.sigma_mm =
-        std::max(residual_sigma_mm(pairs_, scale_mm_), 0.5 * scan_.noise_sigma_mm + 1e-3);
+    fit_.sigma_mm = std::max(residual_sigma_mm(pairs_, scale_mm_), 0.5 * scan_.noise_sigma_mm + 1e-3);
     fit_.pairs = static_cast<std::size_t>(
         std::count_if(pairs_.begin(), pairs_.end(), [](const SurfacePair& pair) { return pair.on_face; }));
     strips_->update(pairs_, fit_.shift_mm, strip_reach_mm_, kGateSigmas * fit_.sigma_mm, options_.threads);
@@ -127,10 +127,11 @@ class SurfaceFitter {
   SurfaceSystem assemble() const {
     const double stray_ratio =
         std::min(kMostStrayRatio, kStrayRatio + kStrayRatioPerMm * kGateSigmas * fit_.sigma_mm);
-    SurfaceSystem system = summed(pairs_.size(), [&](std::size_t begin, std::size_t end, SurfaceSystem& part) {
-      add_surface(pairs_, begin, end, fit_.sigma_mm, scale_mm_, part);
-      strips_->add(begin, end, fit_.offset_mm, tau_mm_, stray_ratio, part);
-    });
+    SurfaceSystem system =
+        summed(pairs_.size(), [&](std::size_t begin, std::size_t end, SurfaceSystem& part) {
+          add_surface(pairs_, begin, end, fit_.sigma_mm, scale_mm_, part);
+          strips_->add(begin, end, fit_.offset_mm, tau_mm_, stray_ratio, part);
+        });
     system += summed(sheet_.size(), [&](std::size_t begin, std::size_t end, SurfaceSystem& part) {
       for (std::size_t i = begin; i < end; ++i) sheet_[i].add(fit_.shift_mm, prior_, part);
     });
@@ -191,8 +192,8 @@ class SurfaceFitter {
     scale_mm_ = kScaleSigmas * fit_.sigma_mm;
     const SurfaceSystem system = assemble();
     const Eigen::Index n = system.gradient.size();
-    fit_.covariance = Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>(system.information)
-                          .solve(Eigen::MatrixXd::Identity(n, n));
+    fit_.covariance =
+        Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>(system.information).solve(Eigen::MatrixXd::Identity(n, n));
     for (const SheetCell& cell : sheet_)
       fit_.mean_strain_ratio += largest_strain(cell.mid_strain(fit_.shift_mm, prior_.thickness_mm)) /
                                 static_cast<double>(sheet_.size());

@@ -20,7 +20,7 @@ enum class ContourRole {
 
 /// Options of refine_surface(). Lengths in mm of the CAD.
 struct SurfaceOptions {
-  double band_mm = 60.0;          ///< the field lives on the CAD within this of the contours (role cut: on all)
+  double band_mm = 60.0;  ///< the field lives on the CAD within this of the contours (role cut: on all)
   double node_spacing_mm = 30.0;  ///< of the field's nodes; wider when the surface would need too many
   SheetPrior prior;
   double edge_share_ratio = 0.33;  ///< an edge is known up to a smooth shift over this share of its length
@@ -42,7 +42,7 @@ struct SurfaceFit {
   std::vector<double> offset_mm;          ///< one an edge used: it lies this far inside the material
   Eigen::MatrixXd covariance;             ///< of the node shifts (3 each), then the offsets; mm^2
   double sigma_mm = 0.0;                  ///< robust residual normal to the surface
-  double mean_strain_ratio = 0.0;         ///< of the mid-surface: mean of its larger principal strain, absolute
+  double mean_strain_ratio = 0.0;  ///< of the mid-surface: mean of its larger principal strain, absolute
   std::size_t pairs = 0;
   int rounds = 0;
   std::string stop;    ///< "converged", "round limit"
@@ -58,6 +58,7 @@ struct SurfaceFit {
 ///   source   node blending after Sumner, Schmid, Pauly, ACM TOG 26(3), 2007; annealing after Yang et al.,
 ///            RA-L 5(2), 2020
 [[nodiscard]] SurfaceFit refine_surface(const CadModel& cad, const ScanModel& scan,
-                                        const RigidMotion& rigid_scan_from_cad, const SurfaceOptions& options);
+                                        const RigidMotion& rigid_scan_from_cad,
+                                        const SurfaceOptions& options);
 
 }  // namespace arris

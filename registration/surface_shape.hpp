@@ -13,7 +13,7 @@ namespace arris {
 struct LocalShape {
   Eigen::Vector3d shift_mm = Eigen::Vector3d::Zero();
   Eigen::Vector3d f1 = Eigen::Vector3d::UnitX(), f2 = Eigen::Vector3d::UnitY();  ///< images of t1, t2
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();                              ///< deformed, unit
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();                             ///< deformed, unit
   /// Orthonormal rotation nearest to the deformation: carries (t1, t2, n) to the deformed frame.
   [[nodiscard]] Eigen::Matrix3d rotation(const BasisRow& row) const;
 };
@@ -21,23 +21,25 @@ struct LocalShape {
 
 /// How stiff the sheet is taken to be.
 struct SheetPrior {
-  double strain_ratio = 3e-4;      ///< expected in-surface strain of the mid-surface
-  double bend_per_mm = 3e-4;       ///< expected change of curvature
-  double thickness_mm = 0.0;       ///< of the sheet; the mid-surface lies half of it below the CAD's face
-  double patch_mm = 50.0;          ///< the priors count once a square of this edge
+  double strain_ratio = 3e-4;  ///< expected in-surface strain of the mid-surface
+  double bend_per_mm = 3e-4;   ///< expected change of curvature
+  double thickness_mm = 0.0;   ///< of the sheet; the mid-surface lies half of it below the CAD's face
+  double patch_mm = 50.0;      ///< the priors count once a square of this edge
 };
 
 /// Green's strain of the mid-surface and change of curvature of one cell, with their derivatives:
 ///   E_ab = (F_a . F_b - delta_ab) / 2 on the face; the mid-surface, t/2 below it, has E + t/2 (II' - II)
 ///   II' - II = n'. (x,ab + u,ab) - n . x,ab, with the normal's own variation in the derivative
-/// A sheet bends almost without stretching its middle (Kirchhoff): both are residuals, by their expected size.
+/// A sheet bends almost without stretching its middle (Kirchhoff): both are residuals, by their expected
+/// size.
 class SheetCell {
  public:
   /// nodes_mm: places of the nodes, for the CAD's own curvature.
   SheetCell(const SurfaceCell& cell, const SurfaceBasis& basis);
   [[nodiscard]] bool usable() const { return row_.usable(); }
   [[nodiscard]] const BasisRow& row() const { return row_; }
-  void add(const std::vector<Eigen::Vector3d>& shift_mm, const SheetPrior& prior, SurfaceSystem& system) const;
+  void add(const std::vector<Eigen::Vector3d>& shift_mm, const SheetPrior& prior,
+           SurfaceSystem& system) const;
   /// Strain of the mid-surface, components 11, 12, 22.
   [[nodiscard]] Eigen::Vector3d mid_strain(const std::vector<Eigen::Vector3d>& shift_mm,
                                            double thickness_mm) const;

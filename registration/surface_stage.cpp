@@ -10,9 +10,9 @@
 namespace arris {
 namespace {
 
-constexpr double kMotionStepMm = 10.0;   // the field along a contour is sampled this finely
-constexpr double kJudgeStepMm = 5.0;     // and its uncertainty
-constexpr double kSlideShare = 0.5;      // of the worst variance: then the whole contour slides
+constexpr double kMotionStepMm = 10.0;                // the field along a contour is sampled this finely
+constexpr double kJudgeStepMm = 5.0;                  // and its uncertainty
+constexpr double kSlideShare = 0.5;                   // of the worst variance: then the whole contour slides
 constexpr double kNearSpacings = 3.0, kNearMm = 3.0;  // a scan point this near makes a place "data"
 constexpr std::size_t kUnseenBins = 8;
 
@@ -22,8 +22,18 @@ EdgeFit no_edge(const Curve& curve, const EdgeFitOptions& options) {
   const Eigen::Index n = spline.size();
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(n, n);
-  return {spline, zero, zero, zero, none, none, none, curve.length_mm() / kUnseenBins,
-          std::vector<char>(kUnseenBins, 0), 0.0, 0.0, 0};
+  return {spline,
+          zero,
+          zero,
+          zero,
+          none,
+          none,
+          none,
+          curve.length_mm() / kUnseenBins,
+          std::vector<char>(kUnseenBins, 0),
+          0.0,
+          0.0,
+          0};
 }
 
 std::string text_of(const Eigen::Vector3d& direction) {
@@ -62,10 +72,11 @@ void judge_place(const CadModel& cad, const SurfaceField& field, const Registrat
                     id, motion.c_str(), std::sqrt(slide.eigenvalues()[2]), options.max_sd_mm);
       result.free_directions.push_back(motion);
     } else {
-      std::snprintf(text, sizeof text,
-                    "contour %d: its place across is not known well enough at s = %.0f mm: standard deviation "
-                    "%.1f mm, at most %.1f",
-                    id, worst.arc_mm, worst.sd_mm, options.max_sd_mm);
+      std::snprintf(
+          text, sizeof text,
+          "contour %d: its place across is not known well enough at s = %.0f mm: standard deviation "
+          "%.1f mm, at most %.1f",
+          id, worst.arc_mm, worst.sd_mm, options.max_sd_mm);
     }
     result.refusals.emplace_back(text);
   }
@@ -77,7 +88,8 @@ std::vector<SeenAlong> seen_along(const CadModel& cad, const ScanModel& scan, co
   std::vector<SeenAlong> seen(cad.contours.size());
   const double near_mm = kNearSpacings * scan.spacing_mm + kNearMm;
   for (std::size_t c = 0; c < seen.size(); ++c)
-    for (double s_mm = 0.5 * SeenAlong::kBinMm; s_mm < cad.contours[c].length_mm(); s_mm += SeenAlong::kBinMm) {
+    for (double s_mm = 0.5 * SeenAlong::kBinMm; s_mm < cad.contours[c].length_mm();
+         s_mm += SeenAlong::kBinMm) {
       if (role == ContourRole::kEdge) {
         seen[c].bins.push_back(contours[c].edge.seen_at(s_mm) ? 1 : 0);
         continue;

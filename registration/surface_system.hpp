@@ -22,8 +22,8 @@ struct SurfaceSystem {
     int offset = -1;
     double offset_derivative = 0.0;
   };
-  /// Adds slope * J to the gradient and curvature * J'J to the information; for least squares slope = weight *
-  /// residual, curvature = weight.
+  /// Adds slope * J to the gradient and curvature * J'J to the information; for least squares slope = weight
+  /// * residual, curvature = weight.
   void add(const Row& row, double slope, double curvature);
   SurfaceSystem& operator+=(const SurfaceSystem& other) {
     information += other.information;

@@ -54,7 +54,7 @@ std::string other_value(const Key& key) {
     return std::to_string(**whole < key.max ? **whole + 1 : **whole);
   if (auto* const* number = std::get_if<double*>(&key.slot)) {
     const double next = **number + 0.25;
-    return std::to_string(next <= key.max ? next : **number - 0.25);
+    return next <= key.max ? std::to_string(next) : std::to_string(0.5 * (**number + key.min));
   }
   ADD_FAILURE() << "no other value for " << key.name;
   return {};
@@ -191,6 +191,11 @@ TEST(Recipe, RegistrationDefaultsAreThoseOfTheRoom) {
   EXPECT_EQ(read.coarse.band_mm, room.coarse.band_mm);
   EXPECT_EQ(read.min_seen_ratio, room.min_seen_ratio);
   EXPECT_EQ(read.max_unseen_mm, room.max_unseen_mm);
+  EXPECT_EQ(read.max_sd_mm, room.max_sd_mm);
+  EXPECT_EQ(read.surface.node_spacing_mm, room.surface.node_spacing_mm);
+  EXPECT_EQ(read.surface.prior.strain_ratio, room.surface.prior.strain_ratio);
+  EXPECT_EQ(read.surface.prior.bend_per_mm, room.surface.prior.bend_per_mm);
+  EXPECT_EQ(read.surface.offset_sd_mm, room.surface.offset_sd_mm);
   const SubdivisionIcpOptions &s = read.subdivision, &t = room.subdivision;
   EXPECT_EQ(s.subdivision.corner_radius_max_mm, t.subdivision.corner_radius_max_mm);
   EXPECT_EQ(s.subdivision.segment_length_max_mm, t.subdivision.segment_length_max_mm);
@@ -256,10 +261,8 @@ TEST(Recipe, MessagesNameWhatWhereFoundNeededNext) {
 
 TEST(Recipe, WordsOfLaterVersionsSaySo) {
   const std::pair<std::string, std::string> cases[] = {
-      {"[registration]\nmethod = \"surface\"\n", "use \"subdivision\""},
-      {"[registration]\nmethod = \"projection\"\n", "use \"subdivision\""},
+      {"[registration]\nmethod = \"projection\"\n", "use \"surface\""},
       {"[registration.subdivision]\nrefine = \"ceres\"\n", "use \"none\""},
-      {"[contour]\nrole = \"cut\"\n", "use \"edge\""},
       {"[part]\ncad_is = \"mid\"\n", "use \"scanned_face\""},
       {"[robot]\ncontroller = \"krl\"\n", "use \"rapid\""},
   };

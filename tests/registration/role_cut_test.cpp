@@ -94,13 +94,15 @@ TEST(RoleCut, ASlideThatNothingHoldsIsRefusedAndNamed) {
       points.push_back(whole.scan.points_mm[i]);
       normals.push_back(whole.scan.normals[i]);
     }
-  ScanModel scan{points, normals, NearestPoints(points), {}, {}, {}, whole.scan.spacing_mm, 0.05, SideKnown::kYes};
+  ScanModel scan{points, normals,        NearestPoints(points), {}, {}, {}, whole.scan.spacing_mm,
+                 0.05,   SideKnown::kYes};
   RegistrationOptions options = cut_options(drawn);
   options.coarse.initial_scan_from_cad = RigidMotion::Identity();
   const Registration found = register_part(cad, scan, options);
   ASSERT_FALSE(found.refusals.empty());
   const std::string& why = found.refusals.back();
-  EXPECT_TRUE(why.find("slide along") != std::string::npos || why.find("not known well enough") != std::string::npos)
+  EXPECT_TRUE(why.find("slide along") != std::string::npos ||
+              why.find("not known well enough") != std::string::npos)
       << why;
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "acquisition/types/error.hpp"
 #include "registration/surface_field.hpp"
 #include "tests/registration/scenes.hpp"
 
@@ -57,7 +58,7 @@ TEST(SurfaceField, DoesNotInventADeformation) {
   for (double s_mm = 0.0; s_mm < cad.contours[0].length_mm(); s_mm += 10.0) {
     const Eigen::Vector3d p = cad.contours[0].point_mm(s_mm);
     EXPECT_LT(std::abs((field.map(p).p_scan_mm - p).z()), 0.06);
-    EXPECT_LT((field.map(p).p_scan_mm - p).norm(), trial.edge_limit_mm);
+    EXPECT_LT((field.map(p).p_scan_mm - p).norm(), 1.5 * trial.edge_limit_mm);
   }
 }
 
