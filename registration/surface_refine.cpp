@@ -22,7 +22,7 @@ constexpr double kGaugeMm = 50.0;    // weak pull to the rigid start, for motion
 constexpr double kProximalMm = 5.0;  // a round's moves along such motions stay small
 constexpr double kSettledMm = 1e-3, kSettledEdgeLimits = 0.01;  // moves of a round that no longer matter
 constexpr double kUnknownThicknessWiden = 2.0;                  // the mid-surface's strain is then not known
-constexpr std::size_t kParts = 8;                               // each list is added up in this many chunks
+constexpr std::size_t kParts = 2;  // chunks of a list: each needs a system of its own
 
 double area_mm2_of(const std::vector<SurfaceCell>& cells) {
   double area_mm2 = 0.0;

@@ -130,12 +130,33 @@ class SlowFePart : public testing::TestWithParam<Bounds> {
   const Bounds& bounds_ = GetParam();
   synthetic::FePart part_ = scenes::fe(bounds_.part);
   CadModel cad_ = scenes::cad_of(part_);
+
+  RegistrationOptions by(RegistrationMethod method) const {
+    RegistrationOptions options;
+    options.method = method;
+    options.surface.prior.thickness_mm = part_.thickness_mm();
+    return options;
+  }
 };
+
+TEST_P(SlowFePart, SurfaceFieldReachesAPartOfTheEdgeLimitWithOrWithoutGaps) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed)
+    for (const synthetic::ScanOptions& how : {synthetic::ScanOptions{}, hard()}) {
+      Trial trial = scenes::trial_of(part_, how, seed);
+      const Registration found = register_part(cad_, trial.scan, by(RegistrationMethod::kSurface));
+      if (how.missing_ratio > 0.0 && (!found.usable() || !found.refusals.empty())) continue;
+      ASSERT_TRUE(found.usable()) << found.refusals.front();
+      const scenes::Distance field = field_error(cad_, trial, found);
+      EXPECT_LT(field.mean_mm, 0.6 * trial.edge_limit_mm) << seed;
+      EXPECT_LT(field.max_mm, 2.0 * trial.edge_limit_mm) << seed;
+      EXPECT_LT(std::abs(found.mean_strain_ratio), 0.003);
+    }
+}
 
 TEST_P(SlowFePart, CleanScanIsCorrectedToTheLimitOfWhatItShows) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Trial trial = scenes::trial_of(part_, {}, seed);
-    const Registration found = register_part(cad_, trial.scan, {});
+    const Registration found = register_part(cad_, trial.scan, by(RegistrationMethod::kSubdivision));
     ASSERT_TRUE(found.usable()) << found.refusals.front();
     EXPECT_TRUE(found.refusals.empty()) << found.refusals.front();
     const scenes::Distance field = field_error(cad_, trial, found), rigid = rigid_error(cad_, trial, found);
@@ -151,7 +172,7 @@ TEST_P(SlowFePart, CleanScanIsCorrectedToTheLimitOfWhatItShows) {
 TEST_P(SlowFePart, HardScanIsCorrectedOrRefused) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Trial trial = scenes::trial_of(part_, hard(), seed);
-    const Registration found = register_part(cad_, trial.scan, {});
+    const Registration found = register_part(cad_, trial.scan, by(RegistrationMethod::kSubdivision));
     if (!found.usable() || !found.refusals.empty()) continue;
     const double mean_mm = field_error(cad_, trial, found).mean_mm;
     EXPECT_LT(mean_mm, bounds_.hard_mean_limits * trial.edge_limit_mm) << seed;
