@@ -81,11 +81,17 @@ struct Recipe {
     std::string blend = "sin2";
     std::string refine = "none";
   };
+  struct Projection {
+    std::string model = "spline";
+    double distance_mm = 30.0;
+    double max_residual_mm = 0.5;
+  };
   struct Registration {
     std::string method = "subdivision";
     double min_seen_ratio = 0.6;
     double max_unseen_mm = 100.0;
     Subdivision subdivision;
+    Projection projection;
   };
   struct Tolerance {
     double surface_profile_mm = 0.0;  ///< full width of the zone; 0: none stated, shown and not judged

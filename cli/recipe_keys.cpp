@@ -229,8 +229,8 @@ std::vector<Key> registration_keys(Recipe::Registration& registration) {
       {.name = "registration.method",
        .slot = &registration.method,
        .about = "how the deformation is found; rigid: it is not looked for",
-       .words = {"subdivision", "rigid"},
-       .later = {"surface", "projection"}},
+       .words = {"subdivision", "projection", "rigid"},
+       .later = {"surface"}},
       {.name = "registration.min_seen_ratio",
        .slot = &registration.min_seen_ratio,
        .about = "share of each contour's length that the scan must show; less is refused",
@@ -308,6 +308,26 @@ std::vector<Key> subdivision_keys(Recipe::Subdivision& s) {
   };
 }
 
+std::vector<Key> projection_keys(Recipe::Projection& p) {
+  return {
+      {.name = "registration.projection.model",
+       .slot = &p.model,
+       .about = "method projection: the part lies flat, is bent about one axis, or has a smooth height along "
+                "the contour",
+       .words = {"spline", "parabola", "plane"}},
+      {.name = "registration.projection.distance_mm",
+       .slot = &p.distance_mm,
+       .about = "plane, parabola: scan points farther from the contour do not take part",
+       .min = 0.1,
+       .max = 1e4},
+      {.name = "registration.projection.max_residual_mm",
+       .slot = &p.max_residual_mm,
+       .about = "rms that the model may leave along a contour; more is refused",
+       .min = 0.001,
+       .max = 1e3},
+  };
+}
+
 std::vector<Key> tolerance_keys(Recipe::Tolerance& tolerance) {
   return {
       {.name = "tolerance.surface_profile_mm",
@@ -354,6 +374,7 @@ std::vector<Key> recipe_keys(Recipe& recipe) {
   add(from_contour_keys(recipe.toolpath.from_contour));
   add(registration_keys(recipe.registration));
   add(subdivision_keys(recipe.registration.subdivision));
+  add(projection_keys(recipe.registration.projection));
   add(tolerance_keys(recipe.tolerance));
   add({{.name = "robot.controller",
         .slot = &recipe.robot.controller,

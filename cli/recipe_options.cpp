@@ -15,6 +15,16 @@ StabilityPoints stability_of(const std::string& word) {
   return word == "paper" ? StabilityPoints::kPaper : StabilityPoints::kLocal;
 }
 
+RegistrationMethod method_of(const std::string& word) {
+  if (word == "rigid") return RegistrationMethod::kRigid;
+  return word == "projection" ? RegistrationMethod::kProjection : RegistrationMethod::kSubdivision;
+}
+
+ProjectionKind projection_of(const std::string& word) {
+  if (word == "plane") return ProjectionKind::kPlane;
+  return word == "parabola" ? ProjectionKind::kParabola : ProjectionKind::kSpline;
+}
+
 RigidMotion motion_from_matrix(const std::string& key, const std::vector<double>& numbers) {
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
   for (std::size_t i = 0; i < numbers.size(); ++i)
@@ -75,8 +85,10 @@ ContourOptions contour_options(const Recipe& recipe, int threads) {
 RegistrationOptions registration_options(const Recipe& recipe, int threads) {
   const Recipe::Subdivision& s = recipe.registration.subdivision;
   RegistrationOptions options;
-  options.method =
-      recipe.registration.method == "rigid" ? RegistrationMethod::kRigid : RegistrationMethod::kSubdivision;
+  options.method = method_of(recipe.registration.method);
+  options.projection.kind = projection_of(recipe.registration.projection.model);
+  options.projection.distance_mm = recipe.registration.projection.distance_mm;
+  options.projection.max_residual_mm = recipe.registration.projection.max_residual_mm;
   options.follow_edge = recipe.contour.role == "edge";
   options.min_seen_ratio = recipe.registration.min_seen_ratio;
   options.max_unseen_mm = recipe.registration.max_unseen_mm;
@@ -96,7 +108,7 @@ RegistrationOptions registration_options(const Recipe& recipe, int threads) {
   options.subdivision.max_iterations = s.max_iterations;
   options.subdivision.stop_change_ratio = s.stop_change_ratio;
   options.threads = options.coarse.threads = options.rigid.threads = options.subdivision.threads =
-      options.edge.threads = threads;
+      options.edge.threads = options.projection.threads = threads;
   return options;
 }
 

@@ -71,6 +71,8 @@ class Comparison {
     rigid_known();
     if (registration_.coarse.usable() && registration_.rigid.usable()) {
       rigid_icps();
+      put_projection(kParabola, ProjectionKind::kParabola);
+      put_projection(kHeightSpline, ProjectionKind::kSpline);
       subdivisions();
     }
     whole();
@@ -119,6 +121,18 @@ class Comparison {
       if (outcome_.error[method]->mean_mm < outcome_.error[outcome_.rigid_winner]->mean_mm)
         outcome_.rigid_winner = method;
     outcome_.error[kRigidIcp] = outcome_.error[outcome_.rigid_winner];
+  }
+
+  /// The whole chain again with method projection: its own path, whether or not it would be refused.
+  void put_projection(Method method, ProjectionKind kind) {
+    RegistrationOptions options = registration_options(part_.recipe, part_.threads);
+    options.method = RegistrationMethod::kProjection;
+    options.projection.kind = kind;
+    ScanModel& model = scan_->model;
+    const Registration projected = register_part(part_.cad, model, options);
+    if (!projected.usable()) return;
+    outcome_.error[method] = error_of(
+        carried(part_.path_mm, [&](const Eigen::Vector3d& p) { return projected.field->map(p).p_scan_mm; }));
   }
 
   void subdivisions() {

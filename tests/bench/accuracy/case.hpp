@@ -26,6 +26,8 @@ enum Method : std::size_t {
   kOursToPlane,     ///< rigid ICP, surface and edge
   kPclToPoint,      ///< PCL, contour points
   kPclToPlane,      ///< PCL, points of the band
+  kParabola,        ///< projection, a parabola about a fitted axis; refused or not
+  kHeightSpline,    ///< projection, a spline along the contour; refused or not
   kPaper,           ///< subdivision ICP with the paper's choices
   kPaperNoSupport,  ///< the same without its stability points
   kPlain,           ///< our subdivision ICP on the edge points as extracted
