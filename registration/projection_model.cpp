@@ -17,8 +17,8 @@ namespace {
 constexpr double kCosAgree = 0.5;  // normals within 60 degrees
 constexpr std::size_t kLeastSamples = 30;
 constexpr std::size_t kChunk = 512;
-constexpr int kRounds = 20;            // of reweighting
-constexpr double kScaleSigmas = 5.0;   // of the robust weight: wide, for the misfit of a model is no stray
+constexpr int kRounds = 20;           // of reweighting
+constexpr double kScaleSigmas = 5.0;  // of the robust weight: wide, for the misfit of a model is no stray
 constexpr double kLeastSigmaMm = 1e-4, kSigmaOfMedian = 1.4826;
 constexpr int kDirections = 180;
 constexpr int kRefinements = 60;
@@ -96,7 +96,7 @@ class Quadric {
   /// The best 1, v, w, w^2 for w across an axis at this angle from y, v along it.
   struct Profile {
     Eigen::Vector4d coefficients;
-    double cost = 0.0;  // weighted squares left
+    double cost = 0.0;            // weighted squares left
     double alpha_variance = 0.0;  // for a residual of variance 1
   };
   Profile at(double angle_rad) const {

@@ -86,8 +86,8 @@ struct BentParabola {
   double axis_sd_rad = 0.0;
   double runner_up_ratio = 0.0;  ///< squares left by the best axis more than 45 degrees away, over these
   [[nodiscard]] SurfaceHeight at(const SurfacePlace& place) const;
-  /// False where the part is hardly bent, or an axis across this one leaves less than 1.5 times the squares (a
-  /// twist: bent up one way as much as down the other): then the axis means nothing.
+  /// False where the part is hardly bent, or an axis across this one leaves less than 1.5 times the squares
+  /// (a twist: bent up one way as much as down the other): then the axis means nothing.
   [[nodiscard]] bool axis_known() const;
   /// The point of the axis nearest to the centre, w0 from it; only where axis_known().
   [[nodiscard]] Eigen::Vector3d axis_point_mm() const;

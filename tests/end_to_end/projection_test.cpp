@@ -1,5 +1,5 @@
-// The paper's section 2.2 on its own example, with the real program: a porthole in a doubly curved panel, about
-// 1,500 points. There ICP and projection left 65 % of the rigid error.
+// The paper's section 2.2 on its own example, with the real program: a porthole in a doubly curved panel,
+// about 1,500 points. There ICP and projection left 65 % of the rigid error.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -12,6 +12,7 @@ namespace {
 using nlohmann::json;
 using testing::Job;
 using testing::Ran;
+using testing::text_of;
 
 class ProjectedPorthole : public ::testing::Test {
  protected:
@@ -29,9 +30,7 @@ class ProjectedPorthole : public ::testing::Test {
   double mean_mm() const {
     return testing::error_to(testing::read_table(job_.file("out/corrected.csv")), scan_.edge).mean_mm;
   }
-  json registration() const {
-    return json::parse(text_of(job_.file("out/result.json"))).at("registration");
-  }
+  json registration() const { return json::parse(text_of(job_.file("out/result.json"))).at("registration"); }
   Job job_{"fe/porthole"};
   std::string recipe_ = text_of(job_.file("recipe.toml"));
   synthetic::SyntheticScan scan_;

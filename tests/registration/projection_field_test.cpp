@@ -130,8 +130,9 @@ TEST(ProjectionField, TurnIsTheSlopeOfTheHeight) {
                      across = plate.cad.inward(0, s);
       const auto image = [&](const Vector3d& step) { return field.map(p + step).p_scan_mm; };
       const double h = 1e-3;  // within one chord of the contour
-      const Vector3d normal =
-          (image(h * along) - image(-h * along)).cross(image(2 * h * across) - image(h * across)).normalized();
+      const Vector3d normal = (image(h * along) - image(-h * along))
+                                  .cross(image(2 * h * across) - image(h * across))
+                                  .normalized();
       const Vector3d carried = field.map(p).rotation_scan_from_cad * Vector3d::UnitZ();
       EXPECT_LT(std::acos(std::min(1.0, std::abs(normal.dot(carried)))), 2e-3) << word_of(kind) << s;
     }
@@ -212,7 +213,8 @@ TEST_F(RegisterByProjection, RefusesABendingThatItsModelCannotHold) {
 
 TEST_F(RegisterByProjection, RefusesAnEdgeThatMovedInTheSurface) {
   PlateShape drawn = raised(0.0, 0.0), made = raised(kAlphaPerMm, 0.0);
-  for (double* half : {&drawn.holes[0].half_x_mm, &drawn.holes[0].half_y_mm, &drawn.holes[0].corner_radius_mm})
+  for (double* half :
+       {&drawn.holes[0].half_x_mm, &drawn.holes[0].half_y_mm, &drawn.holes[0].corner_radius_mm})
     *half -= 2.0;
   const Registration refused = found(made, drawn, ProjectionKind::kSpline);
   ASSERT_EQ(refused.refusals.size(), 1u);

@@ -11,9 +11,9 @@
 namespace arris {
 namespace {
 
+using Eigen::Vector3d;
 using synthetic::PlatePart;
 using synthetic::PlateShape;
-using Eigen::Vector3d;
 
 constexpr double kAlphaPerMm = 4e-4;  // 3 mm at 90 mm from the axis
 
