@@ -83,7 +83,14 @@ Method subdivision_pieces(int pieces) {
 }
 
 std::vector<Method> projections() {
-  return {};
+  std::vector<Method> methods;
+  for (const ProjectionKind kind : {ProjectionKind::kParabola, ProjectionKind::kSpline})
+    methods.push_back(
+        chain("projection, " + word_of(kind), [kind](const ScanTrial&, RegistrationOptions& options) {
+          options.method = RegistrationMethod::kProjection;
+          options.projection.kind = kind;
+        }));
+  return methods;
 }
 
 std::vector<Method> joint_fits() {
