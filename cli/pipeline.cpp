@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <variant>
 
 #include "acquisition/types/error.hpp"
 #include "cli/prepare.hpp"
@@ -117,6 +118,31 @@ void describe_segments(const CadModel& cad, const Registration& found, RunRecord
   }
 }
 
+void describe_projection(const CadModel& cad, const Registration& found, const std::string& model,
+                         RunRecord& record) {
+  for (std::size_t c = 0; c < found.projection.size(); ++c) {
+    const ContourProjection& projection = found.projection[c];
+    if (!projection.fit.usable()) continue;
+    const ProjectionResidual& left = projection.residual;
+    const bool is_measure = std::holds_alternative<HeightSpline>(projection.fit.model);
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    RunRecord::ProjectionSummary summary;
+    summary.contour = cad.contours[c].contour().id;
+    summary.model = model;
+    summary.points = projection.fit.points;
+    summary.height_rms_mm = is_measure ? kNone : left.height_rms_mm;
+    summary.height_max_mm = is_measure ? kNone : left.height_max_mm;
+    summary.across_rms_mm = left.across_rms_mm;
+    summary.across_max_mm = left.across_max_mm;
+    summary.scatter_mm = projection.edge.residual_sigma_mm;
+    const auto* parabola = std::get_if<BentParabola>(&projection.fit.model);
+    if (parabola != nullptr && parabola->axis_known())
+      summary.bending = {parabola->alpha_per_mm, parabola->alpha_sd_per_mm, parabola->axis_sd_rad,
+                         parabola->axis_point_mm(), parabola->along_axis};
+    record.projection.push_back(summary);
+  }
+}
+
 /// Scan loops that run along an accepted contour, and those that were left out.
 void describe_loops(const Registration& found, const ScanModel& scan, RunRecord& record) {
   for (std::size_t l = 0; l < scan.loops.size(); ++l) {
@@ -150,6 +176,7 @@ Processed process(const Recipe& recipe, const Drawing& drawing, Measurement& mea
   record.stage_residual_mm = found.stage_residual_mm;
   record.mean_strain_ratio = found.mean_strain_ratio;
   if (record.method == "subdivision") describe_segments(cad, found, record);
+  describe_projection(cad, found, recipe.registration.projection.model, record);
   processed.field_parameters = found.field->parameters();
 
   if (!inspect_only) {

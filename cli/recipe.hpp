@@ -87,6 +87,11 @@ struct Recipe {
     double bend_per_mm = 3e-4;
     double offset_sd_mm = 0.5;
   };
+  struct Projection {
+    std::string model = "spline";
+    double distance_mm = 30.0;
+    double max_residual_mm = 0.5;
+  };
   struct Registration {
     std::string method = "surface";
     double min_seen_ratio = 0.6;
@@ -94,6 +99,7 @@ struct Recipe {
     double max_sd_mm = 1.0;
     Subdivision subdivision;
     Surface surface;
+    Projection projection;
   };
   struct Tolerance {
     double surface_profile_mm = 0.0;  ///< full width of the zone; 0: none stated, shown and not judged

@@ -228,8 +228,7 @@ std::vector<Key> registration_keys(Recipe::Registration& registration) {
       {.name = "registration.method",
        .slot = &registration.method,
        .about = "how the deformation is found; rigid: it is not looked for",
-       .words = {"surface", "subdivision", "rigid"},
-       .later = {"projection"}},
+       .words = {"surface", "subdivision", "projection", "rigid"}},
       {.name = "registration.min_seen_ratio",
        .slot = &registration.min_seen_ratio,
        .about = "share of each contour's length that the scan must show; less is refused",
@@ -339,6 +338,26 @@ std::vector<Key> surface_keys(Recipe::Surface& s) {
   };
 }
 
+std::vector<Key> projection_keys(Recipe::Projection& p) {
+  return {
+      {.name = "registration.projection.model",
+       .slot = &p.model,
+       .about = "method projection: the part lies flat, is bent about one axis, or has a smooth height along "
+                "the contour",
+       .words = {"spline", "parabola", "plane"}},
+      {.name = "registration.projection.distance_mm",
+       .slot = &p.distance_mm,
+       .about = "plane, parabola: scan points farther from the contour do not take part",
+       .min = 0.1,
+       .max = 1e4},
+      {.name = "registration.projection.max_residual_mm",
+       .slot = &p.max_residual_mm,
+       .about = "rms that the model may leave along a contour; more is refused",
+       .min = 0.001,
+       .max = 1e3},
+  };
+}
+
 std::vector<Key> tolerance_keys(Recipe::Tolerance& tolerance) {
   return {
       {.name = "tolerance.surface_profile_mm",
@@ -386,6 +405,7 @@ std::vector<Key> recipe_keys(Recipe& recipe) {
   add(registration_keys(recipe.registration));
   add(subdivision_keys(recipe.registration.subdivision));
   add(surface_keys(recipe.registration.surface));
+  add(projection_keys(recipe.registration.projection));
   add(tolerance_keys(recipe.tolerance));
   add({{.name = "robot.controller",
         .slot = &recipe.robot.controller,

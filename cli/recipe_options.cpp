@@ -15,6 +15,17 @@ StabilityPoints stability_of(const std::string& word) {
   return word == "paper" ? StabilityPoints::kPaper : StabilityPoints::kLocal;
 }
 
+RegistrationMethod method_of(const std::string& word) {
+  if (word == "rigid") return RegistrationMethod::kRigid;
+  if (word == "projection") return RegistrationMethod::kProjection;
+  return word == "subdivision" ? RegistrationMethod::kSubdivision : RegistrationMethod::kSurface;
+}
+
+ProjectionKind projection_of(const std::string& word) {
+  if (word == "plane") return ProjectionKind::kPlane;
+  return word == "parabola" ? ProjectionKind::kParabola : ProjectionKind::kSpline;
+}
+
 RigidMotion motion_from_matrix(const std::string& key, const std::vector<double>& numbers) {
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
   for (std::size_t i = 0; i < numbers.size(); ++i)
@@ -75,12 +86,13 @@ ContourOptions contour_options(const Recipe& recipe, int threads) {
 RegistrationOptions registration_options(const Recipe& recipe, int threads) {
   const Recipe::Subdivision& s = recipe.registration.subdivision;
   RegistrationOptions options;
-  options.method = recipe.registration.method == "rigid"     ? RegistrationMethod::kRigid
-                   : recipe.registration.method == "surface" ? RegistrationMethod::kSurface
-                                                             : RegistrationMethod::kSubdivision;
+  options.method = method_of(recipe.registration.method);
   options.role = options.surface.role =
       recipe.contour.role == "edge" ? ContourRole::kEdge : ContourRole::kCut;
   options.surface.stock_mm = recipe.contour.stock_mm;
+  options.projection.kind = projection_of(recipe.registration.projection.model);
+  options.projection.distance_mm = recipe.registration.projection.distance_mm;
+  options.projection.max_residual_mm = recipe.registration.projection.max_residual_mm;
   options.min_seen_ratio = recipe.registration.min_seen_ratio;
   options.max_unseen_mm = recipe.registration.max_unseen_mm;
   options.band_mm = options.coarse.band_mm = options.rigid.band_mm = options.surface.band_mm = s.band_mm;
@@ -105,7 +117,7 @@ RegistrationOptions registration_options(const Recipe& recipe, int threads) {
   options.subdivision.max_iterations = s.max_iterations;
   options.subdivision.stop_change_ratio = s.stop_change_ratio;
   options.threads = options.coarse.threads = options.rigid.threads = options.subdivision.threads =
-      options.edge.threads = options.surface.threads = threads;
+      options.edge.threads = options.projection.threads = options.surface.threads = threads;
   return options;
 }
 

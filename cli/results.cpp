@@ -29,19 +29,23 @@ ContourError error_along(const CadModel& cad, std::size_t c, const Registration&
     error.arc_mm.push_back(s_mm);
     error.rigid_mm.push_back(seen ? rigid_gap_mm(cad, c, found, s_mm) : kMissing);
     error.across_mm.push_back(seen ? -row.dot(edge.across) : kMissing);  // positive towards the void
-    error.normal_mm.push_back(seen ? row.dot(edge.height) : kMissing);
+    error.normal_mm.push_back(seen ? height_gap_mm(c, found, s_mm) : kMissing);
   }
   return error;
 }
 
-/// Largest stated standard deviation of the edge across, over the part that was seen.
+/// Largest stated standard deviation of the edge across, over the part that was seen. A projection cannot
+/// tell an error of the edge from a bending that moved it in the surface, so all that it leaves there is in
+/// it.
 double worst_edge_sd_mm(const Registration& found) {
   double worst = 0.0;
-  for (const ContourResult& contour : found.contours) {
+  for (std::size_t c = 0; c < found.contours.size(); ++c) {
+    const ContourResult& contour = found.contours[c];
     const Curve& curve = contour.motion.nominal();
+    const double moved_mm = found.projection.empty() ? 0.0 : found.projection[c].residual.across_rms_mm;
     for (double s_mm = 0.0; s_mm < curve.length_mm(); s_mm += kSampleMm)
       if (contour.edge.seen_at(s_mm))
-        worst = std::max(worst, contour.edge.sd_across_mm(s_mm, curve.closed()));
+        worst = std::max(worst, std::hypot(contour.edge.sd_across_mm(s_mm, curve.closed()), moved_mm));
   }
   return worst;
 }
@@ -62,6 +66,9 @@ void judge_shape(RunRecord& record) {
 std::string what_is_judged(const std::string& method) {
   if (method == "rigid") return "found edge against the nominal carried rigidly";
   if (method == "surface") return "found edge against the nominal carried by the surface field";
+  if (method == "projection")
+    return "found edge against the nominal carried by the projection (an error of the edge cannot be told from "
+           "bending that moved it in the surface; the uncertainty holds both)";
   return "found edge against the nominal carried by the segments (an error longer than a segment is "
          "followed, "
          "and not seen here)";

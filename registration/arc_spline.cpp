@@ -11,7 +11,7 @@ ArcSpline::ArcSpline(double length_mm, bool closed, double knot_mm) : length_mm_
   size_ = closed ? pieces : pieces + 3;
 }
 
-SplineRow ArcSpline::at(double arc_mm) const {
+double ArcSpline::locate(double arc_mm, SplineRow& row) const {
   double position = arc_mm / knot_mm_;
   const int pieces = closed_ ? size_ : size_ - 3;
   if (closed_) {
@@ -20,12 +20,24 @@ SplineRow ArcSpline::at(double arc_mm) const {
     position = std::clamp(position, 0.0, static_cast<double>(pieces));
   }
   const int piece = std::min(static_cast<int>(position), pieces - 1);
-  const double t = position - piece, u = 1.0 - t;
-  SplineRow row;
-  row.value = {u * u * u / 6.0, (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
-               (-3.0 * t * t * t + 3.0 * t * t + 3.0 * t + 1.0) / 6.0, t * t * t / 6.0};
   for (int k = 0; k < 4; ++k)
     row.index[static_cast<std::size_t>(k)] = closed_ ? (piece + k) % size_ : piece + k;
+  return position - piece;
+}
+
+SplineRow ArcSpline::at(double arc_mm) const {
+  SplineRow row;
+  const double t = locate(arc_mm, row), u = 1.0 - t;
+  row.value = {u * u * u / 6.0, (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
+               (-3.0 * t * t * t + 3.0 * t * t + 3.0 * t + 1.0) / 6.0, t * t * t / 6.0};
+  return row;
+}
+
+SplineRow ArcSpline::slope_at(double arc_mm) const {
+  SplineRow row;
+  const double t = locate(arc_mm, row), u = 1.0 - t;
+  row.value = {-0.5 * u * u, 0.5 * (3.0 * t - 4.0) * t, 0.5 * ((2.0 - 3.0 * t) * t + 1.0), 0.5 * t * t};
+  for (double& value : row.value) value /= knot_mm_;
   return row;
 }
 

@@ -16,7 +16,8 @@ constexpr double kRigidStartLooseness = 8.0;
 constexpr double kSampleMm = 2.0;
 constexpr double kBesideStockMm = 3.0;  // role cut: edges this near to the stock's are no data
 constexpr double kSeamMm = 2.5,
-                 kSeamEdgeLimits = 3.0;  // how far segments may disagree: bending, and the edge limit
+                 kSeamEdgeLimits = 3.0;    // how far segments may disagree: bending, and the edge limit
+constexpr double kAcrossEdgeLimits = 2.0;  // an edge that seems to lie this far off may be the scan's grain
 constexpr double kResidualMm = 0.15, kResidualSigmas = 5.0;  // of the height beside the edge
 
 /// Turns an undecided scan to the side that the start pose chose.
@@ -130,17 +131,16 @@ double edge_rms(const CadModel& cad, const std::vector<ContourResult>& contours,
   return count > 0.0 ? std::sqrt(sum2 / count) : 0.0;
 }
 
-double stretch(const CadModel& cad, const std::vector<ContourResult>& contours) {
+template <class Carry>
+double stretch(const CadModel& cad, const Carry& carry) {
   double carried_mm = 0.0, nominal_mm = 0.0;
-  for (std::size_t c = 0; c < contours.size(); ++c) {
-    Contour image;
-    image.closed = cad.contours[c].closed();
+  for (std::size_t c = 0; c < cad.contours.size(); ++c) {
+    Contour flat, image;
+    flat.closed = image.closed = cad.contours[c].closed();
     along(cad.contours[c], [&](double s_mm) {
-      image.points_mm.push_back(contours[c].motion.at(s_mm) * cad.contours[c].point_mm(s_mm));
+      flat.points_mm.push_back(cad.contours[c].point_mm(s_mm));
+      image.points_mm.push_back(carry(c, s_mm, flat.points_mm.back()));
     });
-    Contour flat = image;
-    flat.points_mm.clear();
-    along(cad.contours[c], [&](double s_mm) { flat.points_mm.push_back(cad.contours[c].point_mm(s_mm)); });
     carried_mm += length_mm(image);
     nominal_mm += length_mm(flat);
   }
@@ -224,6 +224,61 @@ void judge_coverage(const CadModel& cad, const RegistrationOptions& options, Reg
   }
 }
 
+/// What a projection leaves beyond its limit, on the surface and in it. Across the edge it is also allowed
+/// what a scan of this density cannot show.
+void judge_projection(const CadModel& cad, const ProjectionOptions& options, Registration& result) {
+  for (std::size_t c = 0; c < result.projection.size(); ++c) {
+    const ContourProjection& found = result.projection[c];
+    const std::string contour = "contour " + std::to_string(cad.contours[c].contour().id) + ": ";
+    const std::string model = word_of(options.kind);
+    if (!found.fit.usable()) {
+      result.refusals.push_back(contour + "no " + model + " can be fitted: " + found.fit.reason);
+      continue;
+    }
+    char text[300];
+    if (found.residual.height_rms_mm > options.max_residual_mm) {
+      std::snprintf(text, sizeof text,
+                    "the surface beside it is not bent as a %s: %.2f mm rms left (at most %.2f); "
+                    "registration.projection.model = \"spline\" or method = \"subdivision\" can follow it",
+                    model.c_str(), found.residual.height_rms_mm, options.max_residual_mm);
+      result.refusals.push_back(contour + text);
+    }
+    const double limit_mm = options.max_residual_mm + kAcrossEdgeLimits * found.edge.edge_limit_mm();
+    if (found.residual.across_rms_mm > limit_mm) {
+      std::snprintf(text, sizeof text,
+                    "the edge has moved in the surface, which no projection follows: %.2f mm rms (at most "
+                    "%.2f); method = \"subdivision\" does",
+                    found.residual.across_rms_mm, limit_mm);
+      result.refusals.push_back(contour + text);
+    }
+  }
+}
+
+void deform_by_projection(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options,
+                          Registration& result) {
+  const RigidMotion& rigid = result.rigid.scan_from_cad;
+  for (std::size_t c = 0; c < cad.contours.size(); ++c)
+    result.projection.push_back(
+        project_contour(cad, c, scan, rigid, result.contours[c].edge, options.projection));
+  result.field = std::make_shared<ProjectionField>(cad, rigid, result.projection, options.band_mm);
+}
+
+void deform_by_subdivision(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options,
+                           Registration& result) {
+  std::vector<ContourMotion> earlier;
+  for (int pass = 0; pass < kSharpeningPasses; ++pass) {
+    const EdgeData edge = sharpened(cad, scan, result.contours);
+    std::vector<ContourMotion> moved =
+        subdivision_icp(cad, scan, edge, result.rigid.scan_from_cad, options.subdivision, earlier);
+    earlier = moved;
+    result.contours = with_edges(cad, scan, std::move(moved), options.edge);
+  }
+  result.field =
+      std::make_shared<SubdivisionField>(cad, result.contours, options.band_mm,
+                                                    options.role == ContourRole::kEdge);
+}
+
+/// The edge relative to the rigid motion, and from there the field of the method.
 void deform(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options,
             Registration& result) {
   if (options.method == RegistrationMethod::kSurface) return deform_by_surface(cad, scan, options, result);
@@ -231,19 +286,17 @@ void deform(const CadModel& cad, const ScanModel& scan, const RegistrationOption
   std::vector<ContourMotion> motions;
   for (const Curve& curve : cad.contours) motions.push_back(rigid_motion(curve, rigid));
   result.contours = with_edges(cad, scan, std::move(motions), for_rigid_start(options.edge));
-  if (options.method == RegistrationMethod::kRigid) {
-    result.field = std::make_shared<RigidField>(rigid);
-    return;
+  switch (options.method) {
+    case RegistrationMethod::kRigid:
+      result.field = std::make_shared<RigidField>(rigid);
+      return;
+    case RegistrationMethod::kProjection:
+      return deform_by_projection(cad, scan, options, result);
+    case RegistrationMethod::kSubdivision:
+      return deform_by_subdivision(cad, scan, options, result);
+    case RegistrationMethod::kSurface:  // above: it needs no edge relative to the rigid motion
+      return;
   }
-  std::vector<ContourMotion> earlier;
-  for (int pass = 0; pass < kSharpeningPasses; ++pass) {
-    const EdgeData edge = sharpened(cad, scan, result.contours);
-    std::vector<ContourMotion> moved = subdivision_icp(cad, scan, edge, rigid, options.subdivision, earlier);
-    earlier = moved;
-    result.contours = with_edges(cad, scan, std::move(moved), options.edge);
-  }
-  result.field = std::make_shared<SubdivisionField>(cad, result.contours, options.band_mm,
-                                                    options.role == ContourRole::kEdge);
 }
 
 }  // namespace
@@ -297,18 +350,19 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   result.stage_residual_mm.emplace_back(
       "rigid", edge_rms(cad, result.contours,
                         [&](std::size_t, double, const Eigen::Vector3d& p) { return pose * p; }));
+  const auto carried = [&](std::size_t c, double s_mm, const Eigen::Vector3d& p) -> Eigen::Vector3d {
+    if (options.method == RegistrationMethod::kSubdivision || options.method == RegistrationMethod::kSurface)
+      return result.contours[c].motion.at(s_mm) * p;  // material, without the edge's own error
+    return result.field->map(p).p_scan_mm;
+  };
   if (options.method != RegistrationMethod::kRigid)
-    result.stage_residual_mm.emplace_back(
-        result.field->method(),
-        edge_rms(cad, result.contours, [&](std::size_t c, double s_mm, const Eigen::Vector3d& p) {
-          return result.contours[c].motion.at(s_mm) * p;
-        }));
-  if (options.method != RegistrationMethod::kSurface)
-    result.mean_strain_ratio = stretch(cad, result.contours);
+    result.stage_residual_mm.emplace_back(result.field->method(), edge_rms(cad, result.contours, carried));
+  if (options.method != RegistrationMethod::kSurface) result.mean_strain_ratio = stretch(cad, carried);
   for (const ContourResult& contour : result.contours)
     result.density_per_mm2 = std::max(result.density_per_mm2, contour.edge.density_per_mm2);
   judge_coverage(cad, options, result);
   if (options.method == RegistrationMethod::kSubdivision) judge_seams(cad, result);
+  if (options.method == RegistrationMethod::kProjection) judge_projection(cad, options.projection, result);
   if (options.method != RegistrationMethod::kRigid) judge_residuals(cad, scan, result);
   return result;
 }
@@ -318,6 +372,14 @@ double rigid_gap_mm(const CadModel& cad, std::size_t contour, const Registration
   const ContourResult& found = registration.contours[contour];
   const Eigen::Vector3d edge_mm = edge_point_mm(cad, contour, found.motion, found.edge, arc_mm);
   return cad.contours[contour].nearest(registration.rigid.scan_from_cad.inverse() * edge_mm).distance_mm;
+}
+
+double height_gap_mm(std::size_t contour, const Registration& registration, double arc_mm) {
+  const ContourResult& found = registration.contours[contour];
+  const double height_mm = found.edge.spline.at(arc_mm).dot(found.edge.height);
+  if (registration.projection.empty()) return height_mm;
+  const ProjectionModel& model = registration.projection[contour].fit.model;
+  return height_mm - contour_height(found.motion.nominal(), model, arc_mm).mm;
 }
 
 }  // namespace arris

@@ -9,6 +9,7 @@
 #include "registration/deformation_field.hpp"
 #include "registration/edge_fit.hpp"
 #include "registration/edge_pairs.hpp"
+#include "registration/projection_field.hpp"
 #include "registration/rigid_icp.hpp"
 #include "registration/subdivision_field.hpp"
 #include "registration/subdivision_icp.hpp"
@@ -16,7 +17,7 @@
 
 namespace arris {
 
-enum class RegistrationMethod { kRigid, kSubdivision, kSurface };
+enum class RegistrationMethod { kRigid, kSubdivision, kProjection, kSurface };
 
 /// Everything the recipe may choose about registration.
 struct RegistrationOptions {
@@ -26,6 +27,7 @@ struct RegistrationOptions {
   SubdivisionIcpOptions subdivision;
   SurfaceOptions surface;
   EdgeFitOptions edge;
+  ProjectionOptions projection;
   ContourRole role = ContourRole::kEdge;
   double band_mm = 60.0;         ///< where the field speaks
   double min_seen_ratio = 0.6;   ///< of each contour's length; below it: refused
@@ -41,8 +43,10 @@ struct Registration {
   std::vector<std::string> free_directions;
   std::vector<LoopAssignment> loops;  ///< one a loop of the scan: the contour it runs along, or dropped
   std::shared_ptr<const DeformationField> field;  ///< null when no pose was found
-  std::vector<ContourResult> contours;  ///< one an accepted contour; of method rigid, with one rigid segment
-  std::vector<std::string> refusals;    ///< in plain words
+  std::vector<ContourResult>
+      contours;  ///< one an accepted contour; of methods rigid and projection, with one rigid segment
+  std::vector<ContourProjection> projection;  ///< of method projection: one an accepted contour
+  std::vector<std::string> refusals;          ///< in plain words
   std::vector<std::pair<std::string, double>>
       stage_residual_mm;           ///< distance found edge - carried nominal, rms
   double mean_strain_ratio = 0.0;  ///< lengthening of the contours, carried against nominal
@@ -66,5 +70,9 @@ struct Registration {
 /// Distance from the found edge to the nominal contour carried rigidly, at arc length s of contour c; mm.
 [[nodiscard]] double rigid_gap_mm(const CadModel& cad, std::size_t contour, const Registration& registration,
                                   double arc_mm);
+
+/// Height of the scan's surface over the nominal contour as the method carried it, at arc length s of contour
+/// c; mm, along the normal.
+[[nodiscard]] double height_gap_mm(std::size_t contour, const Registration& registration, double arc_mm);
 
 }  // namespace arris

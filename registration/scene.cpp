@@ -21,4 +21,13 @@ Eigen::Vector3d CadModel::smooth_normal(const SurfacePoint& foot) const {
   return normal.normalized();
 }
 
+NearestContour nearest_contour(std::span<const Curve> contours, const Eigen::Vector3d& p_mm) {
+  NearestContour nearest;
+  for (std::size_t i = 0; i < contours.size(); ++i) {
+    const CurveFoot foot = contours[i].nearest(p_mm);
+    if (i == 0 || foot.distance_mm < nearest.foot.distance_mm) nearest = {i, foot};
+  }
+  return nearest;
+}
+
 }  // namespace arris

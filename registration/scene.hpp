@@ -31,6 +31,14 @@ struct CadModel {
   [[nodiscard]] Eigen::Vector3d smooth_normal(const SurfacePoint& foot) const;
 };
 
+/// The contour that passes nearest to a point, and where; foot.segment -1 when there is no contour. Ties: the
+/// lower index. O(contours log n).
+struct NearestContour {
+  std::size_t contour = 0;
+  CurveFoot foot;
+};
+[[nodiscard]] NearestContour nearest_contour(std::span<const Curve> contours, const Eigen::Vector3d& p_mm);
+
 /// How the scan's normals got their sign; decides whether both sides of the part must be tried.
 enum class SideKnown { kNo, kYes };
 

@@ -28,14 +28,8 @@ SubdivisionField::SubdivisionField(const CadModel& cad, std::vector<ContourResul
 
 MappedPoint SubdivisionField::map(const Eigen::Vector3d& p_cad_mm) const {
   MappedPoint mapped;
-  CurveFoot foot;
-  foot.distance_mm = 1e300;
-  std::size_t c = 0;
-  for (std::size_t i = 0; i < nominal_.size(); ++i) {
-    const CurveFoot candidate = nominal_[i].nearest(p_cad_mm);
-    if (candidate.distance_mm < foot.distance_mm) foot = candidate, c = i;
-  }
   if (nominal_.empty()) return mapped;
+  const auto [c, foot] = nearest_contour(nominal_, p_cad_mm);
   const Curve& curve = nominal_[c];
   const EdgeFit& edge = contours_[c].edge;
   const RigidMotion motion = contours_[c].motion.at(foot.arc_mm);

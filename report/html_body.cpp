@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "report/definitions.hpp"
 #include "report/html_sections.hpp"
@@ -248,6 +249,30 @@ std::string worst_points_section(const RunRecord& record) {
   return html + tag("div", tag("table", rows), "scroll");
 }
 
+std::string bending_text(const RunRecord::ProjectionSummary& p) {
+  if (!p.bending) return "&ndash;";
+  return "radius " + mm(0.5 / p.bending->alpha_per_mm, 0) + " mm, axis through " +
+         coordinates(p.bending->axis_point_mm) + ", known to " +
+         mm(p.bending->axis_sd_rad * 180.0 / std::numbers::pi, 1) + "&deg;";
+}
+
+std::string projection_table(const RunRecord& record) {
+  if (record.projection.empty()) return {};
+  std::string rows = number_row({"contour", "model", "points", "scatter, mm", "height left, rms / max, mm",
+                                 "edge across, rms / max, mm", "bending, CAD frame"},
+                                "th");
+  for (const auto& p : record.projection)
+    rows += number_row(
+        {std::to_string(p.contour), escaped(p.model), std::to_string(p.points), mm(p.scatter_mm),
+         std::isfinite(p.height_rms_mm) ? mm(p.height_rms_mm) + " / " + mm(p.height_max_mm) : "&ndash;",
+         mm(p.across_rms_mm) + " / " + mm(p.across_max_mm), bending_text(p)});
+  return tag("h3", "Projection") +
+         tag("p",
+             "What the model leaves between itself and the scan. An edge that moved in the surface is "
+             "not followed by a projection.") +
+         tag("div", tag("table", rows), "scroll");
+}
+
 std::string registration_section(const RunRecord& record) {
   std::string html;
   if (!record.stage_residual_mm.empty()) {
@@ -265,6 +290,7 @@ std::string registration_section(const RunRecord& record) {
                           s.from_data ? "data" : "prior", escaped(s.stop)});
     html += tag("h3", "Segments") + tag("div", tag("table", rows), "scroll");
   }
+  html += projection_table(record);
   if (record.method != "rigid" && record.accepted())
     html +=
         tag("p", "Mean in-surface strain of the deformation: " + percent(record.mean_strain_ratio, 3) + ".");

@@ -102,6 +102,22 @@ struct RunRecord {
     std::string stop;
   };
   std::vector<SegmentSummary> segments;
+  /// Of method projection: what its model found on one contour and what it left there.
+  struct ProjectionSummary {
+    int contour = 0;
+    std::string model;  ///< "plane", "parabola", "spline"
+    std::size_t points = 0;
+    double height_rms_mm = 0, height_max_mm = 0;  ///< NaN: of a spline, which is the measure
+    double across_rms_mm = 0, across_max_mm = 0;
+    double scatter_mm = 0;  ///< of the scan points beside the contour about their smooth height; robust sigma
+    /// Of a parabola whose axis the scan determines; CAD frame, z = alpha w^2 along the normal.
+    struct Bending {
+      double alpha_per_mm = 0, alpha_sd_per_mm = 0, axis_sd_rad = 0;
+      Eigen::Vector3d axis_point_mm = Eigen::Vector3d::Zero(), axis = Eigen::Vector3d::UnitX();
+    };
+    std::optional<Bending> bending = std::nullopt;
+  };
+  std::vector<ProjectionSummary> projection;
   std::vector<std::pair<std::string, double>>
       stage_residual_mm;           ///< "rigid", "subdivision": rms of the edge pairs
   double mean_strain_ratio = 0.0;  ///< mean in-surface strain of the field

@@ -129,6 +129,27 @@ Json cell(const RunRecord& record) {
   return json;
 }
 
+Json bending(const RunRecord::ProjectionSummary::Bending& b) {
+  // a curvature is far below the 1e-6 that numbers are rounded to: its radius says the same
+  return {{"radius_mm", number(0.5 / b.alpha_per_mm)},
+          {"radius_sd_mm", number(0.5 * b.alpha_sd_per_mm / (b.alpha_per_mm * b.alpha_per_mm))},
+          {"axis_point_cad_mm", vector3(b.axis_point_mm)},
+          {"axis_cad", vector3(b.axis)},
+          {"axis_sd_rad", number(b.axis_sd_rad)}};
+}
+
+Json projection(const RunRecord::ProjectionSummary& p) {
+  return {{"contour", p.contour},
+          {"model", p.model},
+          {"points", p.points},
+          {"height_left_rms_mm", number_or_null(p.height_rms_mm, std::isfinite(p.height_rms_mm))},
+          {"height_left_max_mm", number_or_null(p.height_max_mm, std::isfinite(p.height_max_mm))},
+          {"across_left_rms_mm", number(p.across_rms_mm)},
+          {"across_left_max_mm", number(p.across_max_mm)},
+          {"scatter_mm", number(p.scatter_mm)},
+          {"bending", p.bending ? bending(*p.bending) : Json(nullptr)}};
+}
+
 Json registration(const RunRecord& record) {
   Json json;
   json["method"] = record.method;
@@ -146,6 +167,8 @@ Json registration(const RunRecord& record) {
                                 {"pairs", s.pairs},
                                 {"source", s.from_data ? "data" : "prior"},
                                 {"stop", s.stop}});
+  json["projection"] = Json::array();
+  for (const auto& p : record.projection) json["projection"].push_back(projection(p));
   return json;
 }
 

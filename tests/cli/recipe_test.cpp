@@ -206,6 +206,9 @@ TEST(Recipe, RegistrationDefaultsAreThoseOfTheRoom) {
   EXPECT_EQ(s.stability_distance_mm, t.stability_distance_mm);
   EXPECT_EQ(s.max_iterations, t.max_iterations);
   EXPECT_EQ(s.stop_change_ratio, t.stop_change_ratio);
+  EXPECT_EQ(read.projection.kind, room.projection.kind);
+  EXPECT_EQ(read.projection.distance_mm, room.projection.distance_mm);
+  EXPECT_EQ(read.projection.max_residual_mm, room.projection.max_residual_mm);
 }
 
 TEST(Recipe, MessagesNameWhatWhereFoundNeededNext) {
@@ -261,7 +264,6 @@ TEST(Recipe, MessagesNameWhatWhereFoundNeededNext) {
 
 TEST(Recipe, WordsOfLaterVersionsSaySo) {
   const std::pair<std::string, std::string> cases[] = {
-      {"[registration]\nmethod = \"projection\"\n", "use \"surface\""},
       {"[registration.subdivision]\nrefine = \"ceres\"\n", "use \"none\""},
       {"[part]\ncad_is = \"mid\"\n", "use \"scanned_face\""},
       {"[robot]\ncontroller = \"krl\"\n", "use \"rapid\""},

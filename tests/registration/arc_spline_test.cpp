@@ -56,6 +56,18 @@ TEST(ArcSpline, OpenReproducesConstantsLinesAndParabolas) {
   EXPECT_NEAR(spline.at(-5.0).dot(line), 3.0, 1e-9);
 }
 
+TEST(ArcSpline, SlopeIsTheDerivativeOfTheValue) {
+  for (const bool closed : {false, true}) {
+    const ArcSpline spline(kLengthMm, closed, kKnotMm);
+    const Eigen::VectorXd c = random_coefficients(spline.size(), 9);
+    constexpr double kStepMm = 1e-4;
+    for (double s = 1.3; s < kLengthMm; s += 3.7) {
+      const double secant = (spline.at(s + kStepMm).dot(c) - spline.at(s - kStepMm).dot(c)) / (2.0 * kStepMm);
+      EXPECT_NEAR(spline.slope_at(s).dot(c), secant, 1e-8) << closed << s;
+    }
+  }
+}
+
 /// Value, slope and second derivative at s of the cubic through s, s + h, s + 2 h, s + 3 h.
 Eigen::Vector3d one_sided(const ArcSpline& spline, const Eigen::VectorXd& c, double s, double h) {
   double f[4];

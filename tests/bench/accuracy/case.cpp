@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/clean.hpp"
 #include "acquisition/geometry/rigid_fit.hpp"
 #include "cli/recipe_options.hpp"
 #include "tests/bench/accuracy/pcl_icp.hpp"
@@ -16,31 +15,11 @@ constexpr double kRawEdgeSpacings = 0.5;  // scatter of angle-gap edge points ac
 
 using Points = std::vector<Eigen::Vector3d>;
 
-Points tips(const ToolPath& path) {
-  Points points;
-  for (const PathPoint& row : path.points) points.push_back(row.tip_mm);
-  return points;
-}
-
 template <class Carry>
 Points carried(const Points& points, const Carry& carry) {
   Points result;
   for (const Eigen::Vector3d& p : points) result.push_back(carry(p));
   return result;
-}
-
-/// The nominal face in the band: what a peer that knows no triangles registers.
-Points surface_points(const synthetic::Part& part, const Truth& truth) {
-  const double spacing_mm =
-      std::sqrt(part.band_area_mm2(0, part.band_mm()) / static_cast<double>(part.scan_points()));
-  Points points;
-  for (const synthetic::AreaSample& sample : part.area_samples(spacing_mm))
-    if (truth.near_nominal(sample.nominal_mm, part.band_mm())) points.push_back(sample.nominal_mm);
-  const std::size_t wanted =
-      std::min(points.size(), part.scan_points());  // cells are smaller where the mesh is
-  for (std::size_t i = 0; i < wanted; ++i) points[i] = points[i * points.size() / wanted];
-  points.resize(wanted);
-  return points;
 }
 
 /// Median over the edge of the face points within 10 mm.
@@ -71,6 +50,8 @@ class Comparison {
     rigid_known();
     if (registration_.coarse.usable() && registration_.rigid.usable()) {
       rigid_icps();
+      put_projection(kParabola, ProjectionKind::kParabola);
+      put_projection(kHeightSpline, ProjectionKind::kSpline);
       subdivisions();
     }
     whole();
@@ -121,6 +102,18 @@ class Comparison {
     outcome_.error[kRigidIcp] = outcome_.error[outcome_.rigid_winner];
   }
 
+  /// The whole chain again with method projection: its own path, whether or not it would be refused.
+  void put_projection(Method method, ProjectionKind kind) {
+    RegistrationOptions options = registration_options(part_.recipe, part_.threads);
+    options.method = RegistrationMethod::kProjection;
+    options.projection.kind = kind;
+    ScanModel& model = scan_->model;
+    const Registration projected = register_part(part_.cad, model, options);
+    if (!projected.usable()) return;
+    outcome_.error[method] = error_of(
+        carried(part_.path_mm, [&](const Eigen::Vector3d& p) { return projected.field->map(p).p_scan_mm; }));
+  }
+
   void subdivisions() {
     const ScanModel& model = scan_->model;
     EdgeData raw;
@@ -161,16 +154,6 @@ class Comparison {
 
 }  // namespace
 
-BenchPart::BenchPart(const std::filesystem::path& folder, int thread_count)
-    : fe(synthetic::load_fe_part(folder)),
-      truth(fe),
-      recipe(read_recipe(folder / "recipe.toml")),
-      drawing(read_drawing(recipe, true, thread_count)),
-      cad(prepare_cad(drawing.mesh, drawing.accepted)),
-      path_mm(tips(drawing.path)),
-      surface_mm(surface_points(fe, truth)),
-      threads(thread_count) {}
-
 std::vector<BenchCase> bench_cases() {
   std::vector<BenchCase> cases(5);
   cases[0].name = "clean, noise 0.05 mm";
@@ -186,20 +169,6 @@ std::vector<BenchCase> bench_cases() {
   cases[4].scan.wall_ratio = 0.03;
   cases[4].scan.density_variation_ratio = 2.0;
   return cases;
-}
-
-PreparedScan prepare(const BenchPart& part, const PointCloud& cloud) {
-  Scan scan;
-  scan.cloud = clean(cloud, clean_options(part.recipe, part.threads)).cloud;
-  PrepareOptions options;
-  options.contour = contour_options(part.recipe, part.threads);
-  options.threads = part.threads;
-  return prepare_scan(scan, options);
-}
-
-Correction correct_path(const BenchPart& part, const Registration& registration) {
-  return correct(part.drawing.path, part.cad.surface, *registration.field, registration.rigid.scan_from_cad,
-                 correct_options(part.recipe, part.threads));
 }
 
 Outcome measure(const BenchPart& part, const BenchCase& bench_case, std::uint64_t seed) {

@@ -1,19 +1,12 @@
 #pragma once
 
 #include <array>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "cli/drawing.hpp"
-#include "cli/prepare.hpp"
-#include "cli/recipe.hpp"
-#include "fixtures/synthetic/fe_part.hpp"
 #include "fixtures/synthetic/scan.hpp"
-#include "registration/registration.hpp"
-#include "tests/bench/accuracy/truth.hpp"
-#include "toolpath/correct.hpp"
+#include "tests/support/bench_part.hpp"
 
 namespace arris::bench {
 
@@ -26,25 +19,13 @@ enum Method : std::size_t {
   kOursToPlane,     ///< rigid ICP, surface and edge
   kPclToPoint,      ///< PCL, contour points
   kPclToPlane,      ///< PCL, points of the band
+  kParabola,        ///< projection, a parabola about a fitted axis; refused or not
+  kHeightSpline,    ///< projection, a spline along the contour; refused or not
   kPaper,           ///< subdivision ICP with the paper's choices
   kPaperNoSupport,  ///< the same without its stability points
   kPlain,           ///< our subdivision ICP on the edge points as extracted
   kWhole,           ///< the whole method: what `arris run` writes
   kMethodCount
-};
-
-/// One part with its drawing and the options of its own recipe.
-struct BenchPart {
-  BenchPart(const std::filesystem::path& folder, int threads);
-  synthetic::FePart fe;
-  Truth truth;
-  Recipe recipe;
-  Drawing drawing;
-  CadModel cad;
-  std::vector<Eigen::Vector3d> path_mm;  ///< tips of the nominal path, CAD frame
-  std::vector<Eigen::Vector3d>
-      surface_mm;  ///< the nominal face in the usual band, as many points as the usual scan
-  int threads = 0;
 };
 
 /// A way to scan.
@@ -64,10 +45,6 @@ struct Outcome {
   double surface_limit_mm = 0.0;  ///< sigma / sqrt(points within 10 mm)
   std::size_t points = 0;
 };
-
-/// The stages of `arris run`, from points in memory to the corrected path.
-[[nodiscard]] PreparedScan prepare(const BenchPart& part, const PointCloud& cloud);
-[[nodiscard]] Correction correct_path(const BenchPart& part, const Registration& registration);
 
 [[nodiscard]] Outcome measure(const BenchPart& part, const BenchCase& bench_case, std::uint64_t seed);
 

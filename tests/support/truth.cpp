@@ -1,4 +1,4 @@
-#include "tests/bench/accuracy/truth.hpp"
+#include "tests/support/truth.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -65,22 +65,35 @@ double Truth::arc_mm(const Foot& foot) const {
   return begin + foot.ratio * (end - begin);
 }
 
+std::vector<RowError> Truth::rows(std::span<const Eigen::Vector3d> carried_mm, bool deformed) const {
+  std::vector<RowError> rows;
+  for (const Eigen::Vector3d& p : carried_mm) {
+    const Foot foot = nearest(deformed ? true_ : nominal_, deformed, p);
+    const synthetic::EdgePoint &a = edge_[foot.chord], &b = edge_[next(foot.chord)];
+    const auto between = [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+      return Eigen::Vector3d(((1.0 - foot.ratio) * from + foot.ratio * to).normalized());
+    };
+    const Eigen::Vector3d normal =
+        deformed ? between(a.true_normal, b.true_normal) : between(a.nominal_normal, b.nominal_normal);
+    const Eigen::Vector3d across =
+        deformed ? between(a.true_void, b.true_void) : between(a.nominal_void, b.nominal_void);
+    rows.push_back({arc_mm(foot), foot.offset_mm.norm(), foot.offset_mm.dot(normal),
+                    foot.offset_mm.dot(across), p - foot.offset_mm});
+  }
+  return rows;
+}
+
 PathError Truth::error(std::span<const Eigen::Vector3d> nominal_mm,
                        std::span<const Eigen::Vector3d> carried_mm) const {
   PathError error;
   const double share = 1.0 / static_cast<double>(carried_mm.size());
+  const std::vector<RowError> found = rows(carried_mm, true);
   for (std::size_t i = 0; i < carried_mm.size(); ++i) {
-    const Foot foot = nearest(true_, true, carried_mm[i]);
-    const synthetic::EdgePoint &a = edge_[foot.chord], &b = edge_[next(foot.chord)];
-    const Eigen::Vector3d normal =
-        ((1.0 - foot.ratio) * a.true_normal + foot.ratio * b.true_normal).normalized();
-    const Eigen::Vector3d across = ((1.0 - foot.ratio) * a.true_void + foot.ratio * b.true_void).normalized();
-    const double distance_mm = foot.offset_mm.norm();
-    error.mean_mm += share * distance_mm;
-    error.max_mm = std::max(error.max_mm, distance_mm);
-    error.normal_mm += share * std::abs(foot.offset_mm.dot(normal));
-    error.across_mm += share * std::abs(foot.offset_mm.dot(across));
-    const double slid_mm = arc_mm(foot) - arc_mm(nearest(nominal_, false, nominal_mm[i]));
+    error.mean_mm += share * found[i].distance_mm;
+    error.max_mm = std::max(error.max_mm, found[i].distance_mm);
+    error.normal_mm += share * std::abs(found[i].normal_mm);
+    error.across_mm += share * std::abs(found[i].across_mm);
+    const double slid_mm = found[i].arc_mm - arc_mm(nearest(nominal_, false, nominal_mm[i]));
     error.along_mm += share * std::abs(std::remainder(slid_mm, length_mm_));
   }
   return error;

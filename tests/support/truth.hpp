@@ -17,6 +17,15 @@ struct PathError {
   double along_mm = 0.0;               ///< mean arc length between the foot and the row's own material point
 };
 
+/// One point of a carried path and its foot on the edge.
+struct RowError {
+  double arc_mm = 0.0;  ///< nominal arc length of the foot
+  double distance_mm = 0.0;
+  double normal_mm = 0.0;  ///< signed, positive out of the material
+  double across_mm = 0.0;  ///< signed, in the surface, positive towards the void
+  Eigen::Vector3d foot_mm = Eigen::Vector3d::Zero();
+};
+
 /// The true edge of one part, CAD frame: what the fixture's elements say, no code of the rooms.
 class Truth {
  public:
@@ -25,6 +34,8 @@ class Truth {
   /// Row i of the nominal path and where it was carried, both in the CAD frame (the scan's true pose undone).
   [[nodiscard]] PathError error(std::span<const Eigen::Vector3d> nominal_mm,
                                 std::span<const Eigen::Vector3d> carried_mm) const;
+  /// Each carried row against the true edge (deformed), or against the drawing's (not deformed).
+  [[nodiscard]] std::vector<RowError> rows(std::span<const Eigen::Vector3d> carried_mm, bool deformed) const;
   /// Whether a point of the drawing lies within reach_mm of the nominal edge.
   [[nodiscard]] bool near_nominal(const Eigen::Vector3d& p_cad_mm, double reach_mm) const {
     return nominal_.nearest(p_cad_mm, reach_mm).has_value();

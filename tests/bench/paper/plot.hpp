@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "report/canvas.hpp"
+
+namespace arris::bench {
+
+/// Colour of line i of a figure: the same method has the same colour in all of them.
+[[nodiscard]] report::Rgb line_colour(std::size_t i);
+
+struct PlotLine {
+  std::string name;
+  report::Rgb colour;
+  std::vector<Eigen::Vector2d> points_mm;  ///< x ascending
+  bool is_dashed = false;
+};
+
+/// Lines over one abscissa, as a PNG beside the pictures of the report. y holds zero.
+struct Plot {
+  std::string title, subtitle, x_label, y_label;
+  std::vector<PlotLine> lines;
+  std::vector<std::pair<double, double>> gaps_mm;  ///< stretches of x drawn in grey: no scan points there
+};
+[[nodiscard]] std::string plot_png(const Plot& plot);
+
+}  // namespace arris::bench

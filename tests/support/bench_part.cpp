@@ -1,0 +1,60 @@
+#include "tests/support/bench_part.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/clean.hpp"
+#include "cli/recipe_options.hpp"
+
+namespace arris::bench {
+namespace {
+
+using Points = std::vector<Eigen::Vector3d>;
+
+Points tips(const ToolPath& path) {
+  Points points;
+  for (const PathPoint& row : path.points) points.push_back(row.tip_mm);
+  return points;
+}
+
+/// The nominal face in the band: what a peer that knows no triangles registers.
+Points surface_points(const synthetic::Part& part, const Truth& truth) {
+  const double spacing_mm =
+      std::sqrt(part.band_area_mm2(0, part.band_mm()) / static_cast<double>(part.scan_points()));
+  Points points;
+  for (const synthetic::AreaSample& sample : part.area_samples(spacing_mm))
+    if (truth.near_nominal(sample.nominal_mm, part.band_mm())) points.push_back(sample.nominal_mm);
+  const std::size_t wanted =
+      std::min(points.size(), part.scan_points());  // cells are smaller where the mesh is
+  for (std::size_t i = 0; i < wanted; ++i) points[i] = points[i * points.size() / wanted];
+  points.resize(wanted);
+  return points;
+}
+
+}  // namespace
+
+BenchPart::BenchPart(const std::filesystem::path& folder, int thread_count)
+    : fe(synthetic::load_fe_part(folder)),
+      truth(fe),
+      recipe(read_recipe(folder / "recipe.toml")),
+      drawing(read_drawing(recipe, true, thread_count)),
+      cad(prepare_cad(drawing.mesh, drawing.accepted)),
+      path_mm(tips(drawing.path)),
+      surface_mm(surface_points(fe, truth)),
+      threads(thread_count) {}
+
+PreparedScan prepare(const BenchPart& part, const PointCloud& cloud) {
+  Scan scan;
+  scan.cloud = clean(cloud, clean_options(part.recipe, part.threads)).cloud;
+  PrepareOptions options;
+  options.contour = contour_options(part.recipe, part.threads);
+  options.threads = part.threads;
+  return prepare_scan(scan, options);
+}
+
+Correction correct_path(const BenchPart& part, const Registration& registration) {
+  return correct(part.drawing.path, part.cad.surface, *registration.field, registration.rigid.scan_from_cad,
+                 correct_options(part.recipe, part.threads));
+}
+
+}  // namespace arris::bench
