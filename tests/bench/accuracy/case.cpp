@@ -107,11 +107,13 @@ class Comparison {
     RegistrationOptions options = registration_options(part_.recipe, part_.threads);
     options.method = RegistrationMethod::kProjection;
     options.projection.kind = kind;
-    ScanModel& model = scan_->model;
-    const Registration projected = register_part(part_.cad, model, options);
-    if (!projected.usable()) return;
+    put_chain(method, options);
+  }
+  void put_chain(Method method, const RegistrationOptions& options) {
+    const Registration found = register_part(part_.cad, scan_->model, options);
+    if (!found.usable()) return;
     outcome_.error[method] = error_of(
-        carried(part_.path_mm, [&](const Eigen::Vector3d& p) { return projected.field->map(p).p_scan_mm; }));
+        carried(part_.path_mm, [&](const Eigen::Vector3d& p) { return found.field->map(p).p_scan_mm; }));
   }
 
   void subdivisions() {
@@ -128,6 +130,9 @@ class Comparison {
     put_motion(kPaperNoSupport, subdivision_icp(part_.cad, model, raw, to_point_, paper).front());
     put_motion(kPlain,
                subdivision_icp(part_.cad, model, raw, registration_.rigid.scan_from_cad, ours).front());
+    RegistrationOptions supported = registration_options(part_.recipe, part_.threads);
+    supported.method = RegistrationMethod::kSubdivision;
+    put_chain(kSupported, supported);
   }
 
   void whole() {

@@ -24,6 +24,7 @@ enum Method : std::size_t {
   kPaper,           ///< subdivision ICP with the paper's choices
   kPaperNoSupport,  ///< the same without its stability points
   kPlain,           ///< our subdivision ICP on the edge points as extracted
+  kSupported,       ///< our subdivision ICP on the edge by one-sided support; refused or not
   kWhole,           ///< the whole method: what `arris run` writes
   kMethodCount
 };

@@ -149,7 +149,7 @@ std::string case_table(const CaseResult& result) {
       "rigid ICP | "
       "mean against best rigid | seeds |\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (const Method method :
-       {kNominal, kBestRigid, kRigidIcp, kParabola, kHeightSpline, kPaper, kPaperNoSupport, kPlain, kWhole})
+       {kNominal, kBestRigid, kRigidIcp, kParabola, kHeightSpline, kPaper, kPaperNoSupport, kPlain, kSupported, kWhole})
     text += row_text(result, method);
   const std::string refused = refusal_lines(result);
   return text + (refused.empty() ? "" : "\n" + refused);

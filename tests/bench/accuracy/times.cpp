@@ -44,7 +44,8 @@ class Clock {
         options_(registration_options(part.recipe, part.threads)) {
     result_.part = part.fe.name();
     result_.points = cloud_.size();
-    result_.total.stage = "points in memory to corrected path";
+    options_.method = RegistrationMethod::kSubdivision;  // the goals are this method's
+    result_.total.stage = "points in memory to corrected path, subdivision";
     result_.with_cad.stage = "the same, CAD prepared from its mesh";
   }
 
@@ -114,6 +115,10 @@ class Clock {
     });
     record(result_.stages, "subdivision ICP and edges (registration less the two above)",
            {all.wall_ms - pose.wall_ms - rigid_icp.wall_ms, all.cpu_ms - pose.cpu_ms - rigid_icp.cpu_ms});
+    RegistrationOptions by_surface = options_;
+    by_surface.method = RegistrationMethod::kSurface;
+    stage("registration by the surface field, all of it",
+          [&] { static_cast<void>(register_part(part_.cad, scan.model, by_surface)); });
     if (registration.usable())
       stage("correction of the path", [&] { static_cast<void>(correct_path(part_, registration)); });
     scan_.emplace(std::move(scan));

@@ -103,6 +103,9 @@ std::vector<Method> all_methods() {
   methods.push_back(paper_subdivision());
   methods.push_back(subdivision());
   for (Method& method : joint_fits()) methods.push_back(std::move(method));
+  methods.push_back(chain("surface field", [](const ScanTrial&, RegistrationOptions& options) {
+    options.method = RegistrationMethod::kSurface;
+  }));
   return methods;
 }
 
