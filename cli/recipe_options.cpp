@@ -80,6 +80,7 @@ RegistrationOptions registration_options(const Recipe& recipe, int threads) {
   options.follow_edge = recipe.contour.role == "edge";
   options.min_seen_ratio = recipe.registration.min_seen_ratio;
   options.max_unseen_mm = recipe.registration.max_unseen_mm;
+  options.mid_depth_mm = 0.5 * recipe.part.thickness_mm.value_or(0.0);
   options.band_mm = options.coarse.band_mm = options.rigid.band_mm = s.band_mm;
   if (recipe.scan.initial.given) {
     options.coarse.initial_scan_from_cad =
@@ -106,6 +107,7 @@ CorrectOptions correct_options(const Recipe& recipe, int threads) {
   options.max_tilt_rad = radians(recipe.tolerance.max_tilt_deg);
   options.max_step_ratio = recipe.tolerance.max_step_ratio;
   options.path_reach_mm = recipe.toolpath.path_reach_mm;
+  options.far_face_mm = recipe.toolpath.face == "other" ? recipe.part.thickness_mm.value_or(0.0) : 0.0;
   options.threads = threads;
   return options;
 }

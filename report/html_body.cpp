@@ -9,6 +9,7 @@
 #include "report/picture.hpp"
 #include "report/statistics.hpp"
 #include "report/svg_chart.hpp"
+#include "report/verdict.hpp"
 #include "report/worst_points.hpp"
 
 namespace arris::report::html {
@@ -266,8 +267,7 @@ std::string registration_section(const RunRecord& record) {
     html += tag("h3", "Segments") + tag("div", tag("table", rows), "scroll");
   }
   if (record.method != "rigid" && record.accepted())
-    html +=
-        tag("p", "Mean in-surface strain of the deformation: " + percent(record.mean_strain_ratio, 3) + ".");
+    html += tag("p", "Mean in-surface strain along the contours: " + escaped(strain_text(record)) + ".");
   return html.empty() ? html : tag("h2", "Registration: " + escaped(record.method)) + html;
 }
 
