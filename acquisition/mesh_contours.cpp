@@ -6,61 +6,17 @@
 #include "acquisition/contour_extract.hpp"
 #include "acquisition/contour_set.hpp"
 #include "acquisition/mesh_borders.hpp"
+#include "acquisition/smooth_regions.hpp"
 
 namespace arris {
 namespace {
 
 constexpr BendWindow kDrawnBend{.chords = 3.0, .exact_corners = true};
 constexpr BendWindow kScannedBend{.chords = 3.0, .exact_corners = false};
-constexpr double kFlatTriangle = 1e-6;  // height over longest side, of a triangle without a normal of its own
-constexpr double kCrackWidth = 1e-4;    // mean width over length, of a loop that is a crack
-
-Eigen::Vector3d area_vector(const TriangleMesh& mesh, std::size_t t) {
-  const auto& corner = mesh.triangles[t];
-  const Eigen::Vector3d& a = mesh.vertices_mm[static_cast<std::size_t>(corner[0])];
-  return (mesh.vertices_mm[static_cast<std::size_t>(corner[1])] - a)
-      .cross(mesh.vertices_mm[static_cast<std::size_t>(corner[2])] - a);
-}
-
-double side_mm(const TriangleMesh& mesh, std::size_t t, std::size_t side) {
-  const auto& corner = mesh.triangles[t];
-  return (mesh.vertices_mm[static_cast<std::size_t>(corner[(side + 1) % 3])] -
-          mesh.vertices_mm[static_cast<std::size_t>(corner[side])])
-      .norm();
-}
-
-std::size_t longest_side(const TriangleMesh& mesh, std::size_t t) {
-  std::size_t longest = 0;
-  for (const std::size_t side : {1, 2})
-    if (side_mm(mesh, t, side) > side_mm(mesh, t, longest)) longest = side;
-  return longest;
-}
+constexpr double kCrackWidth = 1e-4;  // mean width over length, of a loop that is a crack
 
 std::int32_t start_vertex(const TriangleMesh& mesh, const BorderEdge& edge) {
   return mesh.triangles[static_cast<std::size_t>(edge.triangle)][static_cast<std::size_t>(edge.side)];
-}
-
-/// Unit normals. A triangle that is flat to a line (tessellators make them) takes the normal of the face
-/// across its longest side, so that it belongs to that face.
-std::vector<Eigen::Vector3d> face_normals(const TriangleMesh& mesh, const MeshAdjacency& neighbours) {
-  std::vector<Eigen::Vector3d> normals;
-  std::vector<std::size_t> flat;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Eigen::Vector3d area_mm2 = area_vector(mesh, t);
-    const double longest_mm = side_mm(mesh, t, longest_side(mesh, t));
-    const bool is_flat = !(area_mm2.norm() > kFlatTriangle * longest_mm * longest_mm);
-    normals.push_back(is_flat ? Eigen::Vector3d::Zero() : Eigen::Vector3d(area_mm2.normalized()));
-    if (is_flat) flat.push_back(t);
-  }
-  for (std::size_t before = flat.size() + 1; !flat.empty() && flat.size() < before;) {
-    before = flat.size();
-    std::erase_if(flat, [&](std::size_t t) {
-      const std::int32_t other = neighbours.across[t][longest_side(mesh, t)];
-      if (other >= 0) normals[t] = normals[static_cast<std::size_t>(other)];
-      return !normals[t].isZero();
-    });
-  }
-  return normals;
 }
 
 /// A mesh with what every search for contours needs.
@@ -121,38 +77,6 @@ std::vector<std::vector<BorderEdge>> open_loops(Borders& borders) {
   return loops;
 }
 
-/// Smooth regions: triangles joined across every side that is not sharp.
-struct Regions {
-  std::vector<int> of;  // region of each triangle
-  std::vector<double> area_mm2;
-};
-
-Regions smooth_regions(const Borders& borders, double sharp_edge_rad) {
-  const double sharp_cos = std::cos(sharp_edge_rad);
-  Regions regions;
-  regions.of.assign(borders.mesh.triangles.size(), -1);
-  std::vector<std::int32_t> stack;
-  for (std::size_t seed = 0; seed < regions.of.size(); ++seed) {
-    if (regions.of[seed] >= 0) continue;
-    const int region = static_cast<int>(regions.area_mm2.size());
-    regions.area_mm2.push_back(0.0);
-    regions.of[seed] = region;
-    stack.push_back(static_cast<std::int32_t>(seed));
-    while (!stack.empty()) {
-      const auto t = static_cast<std::size_t>(stack.back());
-      stack.pop_back();
-      regions.area_mm2.back() += 0.5 * area_vector(borders.mesh, t).norm();
-      for (const std::int32_t next : borders.neighbours.across[t]) {
-        if (next < 0 || regions.of[static_cast<std::size_t>(next)] >= 0) continue;
-        if (borders.normals[t].dot(borders.normals[static_cast<std::size_t>(next)]) < sharp_cos) continue;
-        regions.of[static_cast<std::size_t>(next)] = region;
-        stack.push_back(next);
-      }
-    }
-  }
-  return regions;
-}
-
 /// Mean cosine between the faces along a loop and the plane that it encloses: 1 beside a flat face whose rim
 /// it is, 0 beside the wall of a hole. Weighted by edge length.
 double facing_ratio(const Borders& borders, const std::vector<BorderEdge>& loop) {
@@ -187,7 +111,8 @@ struct LoopOfRegion {
 };
 
 std::vector<FoundContour> sharp_contours(const Borders& borders, double sharp_edge_rad) {
-  const Regions regions = smooth_regions(borders, sharp_edge_rad);
+  const SmoothRegions regions =
+      smooth_regions(borders.mesh, borders.neighbours, borders.normals, sharp_edge_rad);
   const auto region_of = [&](std::int32_t t) { return regions.of[static_cast<std::size_t>(t)]; };
   const auto is_border = [&](std::int32_t t, int k) {
     const std::int32_t other = borders.neighbours.at(t, k);

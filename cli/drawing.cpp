@@ -10,6 +10,7 @@
 #include "acquisition/geometry/surface_query.hpp"
 #include "acquisition/types/error.hpp"
 #include "cli/recipe_options.hpp"
+#include "cli/scanned_face.hpp"
 #include "cli/text_file.hpp"
 #include "toolpath/formats/csv.hpp"
 #include "toolpath/from_contour.hpp"
@@ -44,7 +45,8 @@ void check_facing(const Recipe& recipe, const SurfaceQuery& surface,
   std::size_t agree = 0, against = 0;
   const std::size_t stride = std::max<std::size_t>(1, points_mm.size() / 200);
   for (std::size_t i = 0; i < points_mm.size() && i < normals.size(); i += stride) {
-    const SurfacePoint foot = surface.closest(points_mm[i], recipe.toolpath.path_reach_mm);
+    const double reach_mm = recipe.toolpath.path_reach_mm + recipe.part.thickness_mm.value_or(0.0);
+    const SurfacePoint foot = surface.closest(points_mm[i], reach_mm);
     if (foot.triangle < 0) continue;
     const double cosine = foot.normal.dot(normals[i]);
     agree += cosine > 0.2 ? 1 : 0;
@@ -136,9 +138,9 @@ std::vector<Contour> accepted_contours(const Recipe& recipe, const ContourSet& l
   return accepted;
 }
 
-ToolPath read_path(const Recipe& recipe, const std::vector<Contour>& accepted,
-                   std::vector<std::string>& notes) {
-  if (recipe.toolpath.from_contour.given) return path_from_contours(accepted, from_contour_options(recipe));
+/// The rows of toolpath.file; none when the path is made from contours.
+ToolPath path_of_file(const Recipe& recipe, std::vector<std::string>& notes) {
+  if (recipe.toolpath.from_contour.given) return {};
   if (recipe.toolpath.file.empty())
     throw Error(Fault::kRecipe, {.what = "the recipe names no tool path",
                                  .needed = "toolpath.file or [toolpath.from_contour]",
@@ -149,6 +151,18 @@ ToolPath read_path(const Recipe& recipe, const std::vector<Contour>& accepted,
   for (PathPoint& point : read.path.points)
     if (point.feed_mm_s == 0.0) point.feed_mm_s = recipe.toolpath.feed_mm_s;
   return std::move(read.path);
+}
+
+/// The axes leave the face that toolpath.face names.
+void check_axes(const Recipe& recipe, const TriangleMesh& scanned, const ToolPath& path) {
+  const double side = recipe.toolpath.face == "other" ? -1.0 : 1.0;
+  std::vector<Eigen::Vector3d> tips_mm, axes;
+  for (const PathPoint& point : path.points) {
+    tips_mm.push_back(point.tip_mm);
+    axes.push_back(side * point.axis);
+  }
+  check_facing(recipe, SurfaceQuery(scanned), tips_mm, axes,
+               "tool axes (toolpath.face = \"" + recipe.toolpath.face + "\") point");
 }
 
 }  // namespace
@@ -163,18 +177,21 @@ Drawing read_drawing(const Recipe& recipe, bool want_path, int threads) {
     refuse_inverted(recipe, "a closed mesh of negative volume");
   const SurfaceQuery surface(drawing.mesh);
   drawing.accepted = accepted_contours(recipe, loops, surface);
-  for (const FoundContour& loop : loops.found)
-    if (std::none_of(drawing.accepted.begin(), drawing.accepted.end(),
-                     [&](const Contour& contour) { return contour.id == loop.contour.id; }))
-      drawing.others.push_back(loop.contour);
-  if (!want_path) return drawing;
-  drawing.path = read_path(recipe, drawing.accepted, drawing.notes);
-  std::vector<Eigen::Vector3d> tips_mm, axes;
-  for (const PathPoint& point : drawing.path.points) {
-    tips_mm.push_back(point.tip_mm);
-    axes.push_back(point.axis);
-  }
-  check_facing(recipe, surface, tips_mm, axes, "tool axes point");
+  const bool axes_decide = recipe.part.cad_is == "solid" && !recipe.toolpath.file.empty();
+  if (want_path || axes_decide) drawing.path = path_of_file(recipe, drawing.notes);
+  ScannedFace face = scanned_face(recipe, drawing.mesh, loops, drawing.accepted, drawing.path);
+  if (want_path && recipe.toolpath.from_contour.given)
+    drawing.path = path_from_contours(recipe.toolpath.face == "other" ? face.far : face.accepted,
+                                      from_contour_options(recipe));
+  drawing.mesh = std::move(face.mesh);
+  drawing.accepted = std::move(face.accepted);
+  drawing.others = std::move(face.others);
+  drawing.thickness_mm = face.thickness_mm;
+  drawing.face_lines = std::move(face.lines);
+  if (want_path)
+    check_axes(recipe, drawing.mesh, drawing.path);
+  else
+    drawing.path = {};
   return drawing;
 }
 

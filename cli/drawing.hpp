@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,12 +12,14 @@
 
 namespace arris {
 
-/// The drawing and what the recipe takes from it: frame Cad, mm.
+/// The drawing, reduced to the face that is scanned, and what the recipe takes from it: frame Cad, mm.
 struct Drawing {
   TriangleMesh mesh;
-  std::vector<Contour> accepted;  ///< loops of the mesh that the recipe accepts
-  std::vector<Contour> others;    ///< its loops that are not accepted
-  ToolPath path;                  ///< empty when none was asked for
+  std::vector<Contour> accepted;        ///< loops of the mesh that the recipe accepts
+  std::vector<Contour> others;          ///< its loops that are not accepted
+  std::optional<double> thickness_mm;   ///< stated, or measured on a solid
+  std::vector<std::string> face_lines;  ///< how the scanned face came out of the drawing; for the operator
+  ToolPath path;                        ///< empty when none was asked for
   std::vector<std::string> notes;
 };
 

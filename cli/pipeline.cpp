@@ -24,12 +24,17 @@ constexpr double kMirrorAlikeRatio = 1.3;  // score of the mirror image over the
 
 /// What makes a start pose impossible because the input is wrong, not because the data are poor.
 void refuse_wrong_input(const CoarseAlignment& coarse, const Recipe& recipe) {
-  if (coarse.mirrored)
-    throw Error(Fault::kInput,
-                {.what = "the scan is mirrored",
-                 .found = "its mirror image fits the part, the scan itself does not",
-                 .needed = "a right-handed scan of this part",
-                 .next = "export the scan again without mirroring, or take the drawing of the other hand"});
+  if (coarse.mirrored) {
+    const bool is_face = recipe.part.cad_is != "scanned_face";  // the face beyond is the mirror image
+    throw Error(
+        Fault::kInput,
+        {.what = is_face ? "the scan is mirrored, or shows the other face" : "the scan is mirrored",
+         .found = "its mirror image fits the part, the scan itself does not",
+         .needed = is_face ? "a right-handed scan of the face that the recipe names as scanned"
+                           : "a right-handed scan of this part",
+         .next = is_face ? "check part.cad_is, contour.accept and toolpath.face; or export the scan again"
+                         : "export the scan again without mirroring, or take the drawing of the other hand"});
+  }
   if (coarse.no_points)
     throw Error(Fault::kInput, {.what = "no points in the band",
                                 .found = "no scan point near the part at the initial pose",
@@ -62,6 +67,8 @@ void describe_inputs(const Recipe& recipe, const Drawing& drawing, const Measure
   record.spacing_mm = measurement.prepared.model.spacing_mm;
   record.noise_sigma_mm = measurement.prepared.model.noise_sigma_mm;
   record.notes = drawing.notes;
+  record.face_lines = drawing.face_lines;
+  record.notes.insert(record.notes.end(), drawing.face_lines.begin(), drawing.face_lines.end());
   record.notes.insert(record.notes.end(), measurement.notes.begin(), measurement.notes.end());
   record.cloud = measurement.cloud;
   record.cad = drawing.mesh;
@@ -143,6 +150,13 @@ void describe_projection(const CadModel& cad, const Registration& found, const s
   }
 }
 
+void describe_strain(const Registration& found, const Drawing& drawing, RunRecord& record) {
+  record.mean_strain_ratio = found.mean_strain_ratio;
+  record.face_strain_ratio = found.face_strain_ratio;
+  record.strain_limit_ratio = found.strain_limit_ratio;
+  record.strain_at_mid = drawing.thickness_mm.has_value();
+}
+
 /// Scan loops that run along an accepted contour, and those that were left out.
 void describe_loops(const Registration& found, const ScanModel& scan, RunRecord& record) {
   for (std::size_t l = 0; l < scan.loops.size(); ++l) {
@@ -153,8 +167,10 @@ void describe_loops(const Registration& found, const ScanModel& scan, RunRecord&
 
 }  // namespace
 
-Processed process(const Recipe& recipe, const Drawing& drawing, Measurement& measurement, bool inspect_only,
-                  int threads, const StageHook& stage) {
+Processed process(const Recipe& as_written, const Drawing& drawing, Measurement& measurement,
+                  bool inspect_only, int threads, const StageHook& stage) {
+  Recipe recipe = as_written;
+  recipe.part.thickness_mm = drawing.thickness_mm;  // a solid says it itself
   Processed processed;
   RunRecord& record = processed.record;
   record.has_toolpath = !inspect_only;
@@ -174,7 +190,7 @@ Processed process(const Recipe& recipe, const Drawing& drawing, Measurement& mea
   describe_loops(found, scan, record);
   if (!found.usable()) return processed;
   record.stage_residual_mm = found.stage_residual_mm;
-  record.mean_strain_ratio = found.mean_strain_ratio;
+  describe_strain(found, drawing, record);
   if (record.method == "subdivision") describe_segments(cad, found, record);
   describe_projection(cad, found, recipe.registration.projection.model, record);
   processed.field_parameters = found.field->parameters();

@@ -27,6 +27,12 @@ void check_together(const std::filesystem::path& file, const Recipe& recipe,
       add({error.what(), where("scan.initial"), {}, {}, {}});
     }
   }
+  const bool moved = recipe.part.cad_is == "other_face" || recipe.part.cad_is == "mid";
+  const bool far = recipe.toolpath.face == "other" && recipe.part.cad_is != "solid";
+  if ((moved || far) && recipe.part.thickness_mm.value_or(0.0) <= 0.0)
+    add({"the thickness of the part is missing", where("part"),
+         moved ? "cad_is = \"" + recipe.part.cad_is + "\"" : "toolpath.face = \"other\"",
+         "part.thickness_mm, more than 0", "write the thickness of the sheet into the recipe"});
   for (const int id : recipe.contour.accept)
     if (std::find(recipe.contour.reject.begin(), recipe.contour.reject.end(), id) !=
         recipe.contour.reject.end())

@@ -95,13 +95,13 @@ RegistrationOptions registration_options(const Recipe& recipe, int threads) {
   options.projection.max_residual_mm = recipe.registration.projection.max_residual_mm;
   options.min_seen_ratio = recipe.registration.min_seen_ratio;
   options.max_unseen_mm = recipe.registration.max_unseen_mm;
+  options.mid_depth_mm = 0.5 * recipe.part.thickness_mm.value_or(0.0);
   options.band_mm = options.coarse.band_mm = options.rigid.band_mm = options.surface.band_mm = s.band_mm;
   options.max_sd_mm = recipe.registration.max_sd_mm;
   options.surface.node_spacing_mm = recipe.registration.surface.node_spacing_mm;
   options.surface.prior.strain_ratio = recipe.registration.surface.strain_ratio;
   options.surface.prior.bend_per_mm = recipe.registration.surface.bend_per_mm;
   options.surface.offset_sd_mm = recipe.registration.surface.offset_sd_mm;
-  options.surface.prior.thickness_mm = recipe.part.thickness_mm.value_or(0.0);
   if (recipe.scan.initial.given) {
     options.coarse.initial_scan_from_cad =
         motion_from_numbers("scan.initial.scan_from_cad", recipe.scan.initial.scan_from_cad);
@@ -127,6 +127,7 @@ CorrectOptions correct_options(const Recipe& recipe, int threads) {
   options.max_tilt_rad = radians(recipe.tolerance.max_tilt_deg);
   options.max_step_ratio = recipe.tolerance.max_step_ratio;
   options.path_reach_mm = recipe.toolpath.path_reach_mm;
+  options.far_face_mm = recipe.toolpath.face == "other" ? recipe.part.thickness_mm.value_or(0.0) : 0.0;
   options.threads = threads;
   return options;
 }

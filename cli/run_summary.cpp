@@ -38,6 +38,7 @@ void print_summary(const RunRecord& record, const std::filesystem::path& folder,
   }
   console::print("part         " + record.part_number + "   (" + record.method + ", result " +
                  record.result_hash.substr(0, 12) + ")");
+  for (const std::string& face : record.face_lines) console::print("face         " + face);
   console::print("correction   " + report::correction_word(record));
   for (const std::string& reason : record.refusals) console::print("             " + reason);
   if (record.frame && record.has_toolpath) {
@@ -53,6 +54,10 @@ void print_summary(const RunRecord& record, const std::filesystem::path& folder,
         line("             mean %.3f mm, max %.3f mm after %s; a scan this dense shows an edge to %.3f mm",
              errors.after.mean_mm, errors.after.max_mm, record.method.c_str(), record.edge_limit_mm));
   }
+  if (record.accepted() && record.method != "rigid")
+    console::print("strain       " + report::strain_text(record));
+  if (const std::string warning = report::permanence_warning(record); !warning.empty() && record.accepted())
+    console::print("warning      " + warning);
   for (const std::string& free : record.alignment.free_directions) console::print("not determined: " + free);
   for (const std::string& step : report::next_steps(record)) console::print("next         " + step);
   if (!record.program_note.empty()) console::print("program      " + record.program_note);

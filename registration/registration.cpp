@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "registration/edge_pairs.hpp"
 #include "registration/surface_stage.hpp"
@@ -131,20 +132,43 @@ double edge_rms(const CadModel& cad, const std::vector<ContourResult>& contours,
   return count > 0.0 ? std::sqrt(sum2 / count) : 0.0;
 }
 
-template <class Carry>
-double stretch(const CadModel& cad, const Carry& carry) {
+/// Lengthening of the contours at a depth below the face, by a field that does not follow the edge's own
+/// error: a fibre of that depth is carried rigidly, so the face's strain less depth times change of
+/// curvature.
+double stretch(const CadModel& cad, const DeformationField& field, double depth_mm) {
   double carried_mm = 0.0, nominal_mm = 0.0;
-  for (std::size_t c = 0; c < cad.contours.size(); ++c) {
-    Contour flat, image;
-    flat.closed = image.closed = cad.contours[c].closed();
-    along(cad.contours[c], [&](double s_mm) {
-      flat.points_mm.push_back(cad.contours[c].point_mm(s_mm));
-      image.points_mm.push_back(carry(c, s_mm, flat.points_mm.back()));
+  for (const Curve& curve : cad.contours) {
+    Contour nominal, image;
+    nominal.closed = image.closed = curve.closed();
+    along(curve, [&](double s_mm) {
+      const Eigen::Vector3d fibre_mm = -depth_mm * curve.normal(s_mm);
+      const MappedPoint place = field.map(curve.point_mm(s_mm));
+      nominal.points_mm.push_back(curve.point_mm(s_mm) + fibre_mm);
+      image.points_mm.push_back(place.p_scan_mm + place.rotation_scan_from_cad * fibre_mm);
     });
     carried_mm += length_mm(image);
-    nominal_mm += length_mm(flat);
+    nominal_mm += length_mm(nominal);
   }
   return nominal_mm > 0.0 ? carried_mm / nominal_mm - 1.0 : 0.0;
+}
+
+void measure_strain(const CadModel& cad, const RegistrationOptions& options, Registration& result) {
+  if (options.method == RegistrationMethod::kRigid) return;  // it does not look for any
+  // The surface field hardly stretches by its prior: a rim that is longer shows in the edge it follows.
+  const SubdivisionField segments(cad, result.contours, options.band_mm, false);
+  const DeformationField& shape = options.method == RegistrationMethod::kSurface
+                                      ? *result.field
+                                      : static_cast<const DeformationField&>(segments);
+  result.face_strain_ratio = stretch(cad, shape, 0.0);
+  result.mean_strain_ratio =
+      options.mid_depth_mm > 0.0 ? stretch(cad, shape, options.mid_depth_mm) : result.face_strain_ratio;
+  double length = 0.0, limit_mm = 0.0;
+  for (const ContourResult& contour : result.contours) {
+    length += contour.motion.nominal().length_mm();
+    limit_mm +=
+        2.0 * std::numbers::pi * contour.edge.edge_limit_mm();  // a rim that wide all round is so much longer
+  }
+  result.strain_limit_ratio = length > 0.0 ? limit_mm / length : 0.0;
 }
 
 /// Longest run of bins without data, as arc lengths; wraps on a closed contour.
@@ -273,8 +297,7 @@ void deform_by_subdivision(const CadModel& cad, const ScanModel& scan, const Reg
     earlier = moved;
     result.contours = with_edges(cad, scan, std::move(moved), options.edge);
   }
-  result.field =
-      std::make_shared<SubdivisionField>(cad, result.contours, options.band_mm,
+  result.field = std::make_shared<SubdivisionField>(cad, result.contours, options.band_mm,
                                                     options.role == ContourRole::kEdge);
 }
 
@@ -351,13 +374,12 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
       "rigid", edge_rms(cad, result.contours,
                         [&](std::size_t, double, const Eigen::Vector3d& p) { return pose * p; }));
   const auto carried = [&](std::size_t c, double s_mm, const Eigen::Vector3d& p) -> Eigen::Vector3d {
-    if (options.method == RegistrationMethod::kSubdivision || options.method == RegistrationMethod::kSurface)
-      return result.contours[c].motion.at(s_mm) * p;  // material, without the edge's own error
-    return result.field->map(p).p_scan_mm;
+    if (options.method == RegistrationMethod::kProjection) return result.field->map(p).p_scan_mm;
+    return result.contours[c].motion.at(s_mm) * p;  // the material, without the edge's own error
   };
   if (options.method != RegistrationMethod::kRigid)
     result.stage_residual_mm.emplace_back(result.field->method(), edge_rms(cad, result.contours, carried));
-  if (options.method != RegistrationMethod::kSurface) result.mean_strain_ratio = stretch(cad, carried);
+  measure_strain(cad, options, result);
   for (const ContourResult& contour : result.contours)
     result.density_per_mm2 = std::max(result.density_per_mm2, contour.edge.density_per_mm2);
   judge_coverage(cad, options, result);

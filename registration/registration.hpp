@@ -33,6 +33,7 @@ struct RegistrationOptions {
   double min_seen_ratio = 0.6;   ///< of each contour's length; below it: refused
   double max_unseen_mm = 100.0;  ///< longest stretch of contour without data; above it: refused
   double max_sd_mm = 1.0;        ///< method surface: a contour known worse than this across is refused
+  double mid_depth_mm = 0.0;     ///< of the mid-surface below the scanned face, for the strain; 0: not known
   int threads = 0;
 };
 
@@ -48,8 +49,10 @@ struct Registration {
   std::vector<ContourProjection> projection;  ///< of method projection: one an accepted contour
   std::vector<std::string> refusals;          ///< in plain words
   std::vector<std::pair<std::string, double>>
-      stage_residual_mm;           ///< distance found edge - carried nominal, rms
-  double mean_strain_ratio = 0.0;  ///< lengthening of the contours, carried against nominal
+      stage_residual_mm;            ///< distance found edge - carried nominal, rms
+  double mean_strain_ratio = 0.0;   ///< lengthening of the contours at mid_depth_mm, carried against nominal
+  double face_strain_ratio = 0.0;   ///< the same on the scanned face, which bending alone lengthens
+  double strain_limit_ratio = 0.0;  ///< what the edge limit makes of it: the scan shows no smaller strain
   double density_per_mm2 = 0.0;
   [[nodiscard]] bool usable() const { return field != nullptr; }
 };

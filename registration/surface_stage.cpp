@@ -105,7 +105,9 @@ std::vector<SeenAlong> seen_along(const CadModel& cad, const ScanModel& scan, co
 
 void deform_by_surface(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options,
                        Registration& result) {
-  SurfaceFit fit = refine_surface(cad, scan, result.rigid.scan_from_cad, options.surface);
+  SurfaceOptions surface = options.surface;
+  surface.prior.thickness_mm = 2.0 * options.mid_depth_mm;
+  SurfaceFit fit = refine_surface(cad, scan, result.rigid.scan_from_cad, surface);
   if (!fit.usable()) {
     result.refusals.push_back(fit.reason);
     return;

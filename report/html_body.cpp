@@ -10,6 +10,7 @@
 #include "report/picture.hpp"
 #include "report/statistics.hpp"
 #include "report/svg_chart.hpp"
+#include "report/verdict.hpp"
 #include "report/worst_points.hpp"
 
 namespace arris::report::html {
@@ -292,8 +293,7 @@ std::string registration_section(const RunRecord& record) {
   }
   html += projection_table(record);
   if (record.method != "rigid" && record.accepted())
-    html +=
-        tag("p", "Mean in-surface strain of the deformation: " + percent(record.mean_strain_ratio, 3) + ".");
+    html += tag("p", "Mean in-surface strain along the contours: " + escaped(strain_text(record)) + ".");
   return html.empty() ? html : tag("h2", "Registration: " + escaped(record.method)) + html;
 }
 

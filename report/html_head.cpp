@@ -248,14 +248,8 @@ std::string three_results(const RunRecord& record) {
                         record.judged_pulled_back.text};
   std::string html = tag("h2", "Three results, kept apart");
   html += tag("div", result_card(first) + result_card(second) + result_card(third), "results") + "\n";
-  constexpr double kMostStrain = 0.003;
-  if (record.has_toolpath && (is_free || record.mean_strain_ratio > kMostStrain))
-    html += tag("p", tag("strong",
-                         is_free ? "The part's shape is permanent: letting it go will not bring the contour "
-                                   "back to the nominal one."
-                                 : "Mean in-surface strain " + percent(record.mean_strain_ratio, 2) +
-                                       " is above 0.3 %: letting the part go will not bring the contour "
-                                       "back to the nominal one."));
+  if (const std::string warning = permanence_warning(record); !warning.empty())
+    html += tag("p", tag("strong", escaped(warning)));
   if (record.as_scanned.count + record.pulled_back.count == 0) return html;
   return html + statistics_table(record);
 }

@@ -92,6 +92,8 @@ struct RunRecord {
   std::vector<std::string>
       notes;  ///< acquisition and contour notes in plain words (filled holes, dropped loops)
 
+  std::vector<std::string> face_lines;  ///< how the scanned face came out of the drawing; in notes as well
+
   // Registration
   AlignmentSummary alignment;
   struct SegmentSummary {
@@ -119,8 +121,11 @@ struct RunRecord {
   };
   std::vector<ProjectionSummary> projection;
   std::vector<std::pair<std::string, double>>
-      stage_residual_mm;           ///< "rigid", "subdivision": rms of the edge pairs
-  double mean_strain_ratio = 0.0;  ///< mean in-surface strain of the field
+      stage_residual_mm;            ///< "rigid", "subdivision": rms of the edge pairs
+  double mean_strain_ratio = 0.0;   ///< mean in-surface strain along the contours, see strain_at_mid
+  double face_strain_ratio = 0.0;   ///< the same on the scanned face, bending included
+  double strain_limit_ratio = 0.0;  ///< the smallest strain that the scan's edge limit lets one see
+  bool strain_at_mid = false;       ///< the thickness is known: mean_strain_ratio is the mid-surface's
 
   // Geometry for pictures, scan frame, local to cloud.offset_mm
   PointCloud cloud;                 ///< the scan as read (cleaned of non-finite points)

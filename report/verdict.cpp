@@ -1,5 +1,6 @@
 #include "report/verdict.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "report/number_text.hpp"
@@ -126,6 +127,28 @@ std::vector<std::string> next_steps(const RunRecord& record) {
       break;
   }
   return steps;
+}
+
+std::string strain_text(const RunRecord& record) {
+  const auto percent = [](double ratio) { return fixed_text(100.0 * ratio, 3) + " %"; };
+  const std::string limit = "; a scan this dense shows " + percent(record.strain_limit_ratio);
+  if (!record.strain_at_mid)
+    return percent(record.face_strain_ratio) +
+           " on the scanned face, bending included (thickness not known)" + limit;
+  return percent(record.mean_strain_ratio) + " at the mid-surface (" + percent(record.face_strain_ratio) +
+         " on the scanned face)" + limit;
+}
+
+std::string permanence_warning(const RunRecord& record) {
+  constexpr double kMostStrain = 0.003;
+  const std::string end = ": letting the part go will not bring the contour back to the nominal one.";
+  if (!record.has_toolpath) return "";
+  if (record.state == "free") return "The part's shape is permanent (state = \"free\")" + end;
+  const double strain = std::abs(record.mean_strain_ratio);
+  if (strain <= std::max(kMostStrain, record.strain_limit_ratio)) return "";
+  return "The contour is " + fixed_text(100.0 * strain, 2) + " % " +
+         (record.mean_strain_ratio > 0.0 ? "longer" : "shorter") +
+         " than drawn, more than 0.3 %: the part is stretched, or was not made to the drawing" + end;
 }
 
 }  // namespace arris::report

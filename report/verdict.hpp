@@ -34,4 +34,12 @@ namespace arris::report {
 /// What the operator does next, one sentence each, the first first.
 [[nodiscard]] std::vector<std::string> next_steps(const RunRecord& record);
 
+/// Why letting the part go will not bring the cut contour back to the nominal one, in words; empty when it
+/// will: a permanent shape (state "free"), or more than 0.3 % strain beyond what the scan could not show
+/// anyway.
+[[nodiscard]] std::string permanence_warning(const RunRecord& record);
+
+/// "0.412 % at the mid-surface (0.520 % on the scanned face); a scan this dense shows 0.050 %".
+[[nodiscard]] std::string strain_text(const RunRecord& record);
+
 }  // namespace arris::report

@@ -154,6 +154,10 @@ Json registration(const RunRecord& record) {
   Json json;
   json["method"] = record.method;
   json["mean_strain_ratio"] = number(record.mean_strain_ratio);
+  json["mean_strain_at"] = record.strain_at_mid ? "mid-surface" : "scanned face";
+  json["face_strain_ratio"] = number(record.face_strain_ratio);
+  json["strain_limit_ratio"] = number(record.strain_limit_ratio);
+  json["release_warning"] = permanence_warning(record);
   json["stage_residual_rms_mm"] = Json::array();
   for (const auto& [stage, rms_mm] : record.stage_residual_mm)
     json["stage_residual_rms_mm"].push_back({{"stage", stage}, {"rms_mm", number(rms_mm)}});

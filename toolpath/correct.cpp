@@ -34,10 +34,19 @@ void check_rows(const ToolPath& nominal) {
   }
 }
 
-std::vector<SurfacePoint> feet_of(const ToolPath& nominal, const SurfaceQuery& cad, int threads) {
+/// Feet on the CAD's face. For a path on the far face the normal is turned to leave that face, and the
+/// distance is counted from the end of the fibre through the part.
+std::vector<SurfacePoint> feet_of(const ToolPath& nominal, const SurfaceQuery& cad,
+                                  const CorrectOptions& options) {
   std::vector<SurfacePoint> feet(nominal.points.size());
-  parallel_for(feet.size(), 256, threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) feet[i] = cad.closest(nominal.points[i].tip_mm);
+  parallel_for(feet.size(), 256, options.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vector3d& tip_mm = nominal.points[i].tip_mm;
+      SurfacePoint& foot = feet[i] = cad.closest(tip_mm);
+      if (options.far_face_mm == 0.0 || foot.triangle < 0) continue;
+      foot.normal = -foot.normal;
+      foot.distance_mm = (tip_mm - foot.foot_mm - options.far_face_mm * foot.normal).norm();
+    }
   });
   return feet;
 }
@@ -243,6 +252,7 @@ void CorrectOptions::check() const {
   need(max_tilt_rad > 0.0 && max_tilt_rad <= 3.1415927, "max_tilt_rad", max_tilt_rad, "in (0, pi]");
   need(max_step_ratio >= 1.0 && std::isfinite(max_step_ratio), "max_step_ratio", max_step_ratio, ">= 1");
   need(step_slack_mm >= 0.0 && std::isfinite(step_slack_mm), "step_slack_mm", step_slack_mm, ">= 0");
+  need(far_face_mm >= 0.0 && std::isfinite(far_face_mm), "far_face_mm", far_face_mm, ">= 0");
   need(path_reach_mm > 0.0 && std::isfinite(path_reach_mm), "path_reach_mm", path_reach_mm, "> 0");
 }
 
@@ -250,7 +260,7 @@ Correction correct(const ToolPath& nominal, const SurfaceQuery& cad, const Defor
                    const RigidMotion& scan_from_cad, const CorrectOptions& options) {
   options.check();
   check_rows(nominal);
-  const std::vector<SurfacePoint> feet = feet_of(nominal, cad, options.threads);
+  const std::vector<SurfacePoint> feet = feet_of(nominal, cad, options);
   check_belongs(nominal, feet, options.path_reach_mm);
 
   Correction correction;

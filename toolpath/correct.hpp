@@ -19,8 +19,9 @@ struct CorrectOptions {
                                 ///< times its length ...
   double step_slack_mm = 0.5;   ///< ... plus this; more is a jump or a fold. >= 1 and >= 0
   double path_reach_mm = 30.0;  ///< farther from the part: air move; > 0
-  int threads = 1;              ///< 0: all cores; the same bytes for any number
-  void check() const;           ///< throws Error(kRecipe) that names field, value and bound
+  double far_face_mm = 0.0;  ///< the path runs on the face this far behind the CAD's; 0: on the CAD's; >= 0
+  int threads = 1;           ///< 0: all cores; the same bytes for any number
+  void check() const;        ///< throws Error(kRecipe) that names field, value and bound
 };
 
 /// One corrected row, beside its nominal row.
@@ -34,7 +35,7 @@ struct CorrectedPoint {
   double sd_normal_mm = 0.0, sd_across_mm = 0.0, sd_along_mm = 0.0,
          sd_axis_rad = 0.0;       ///< of the tip; 0: unknown
   double tilt_rad = 0.0;          ///< turn of the axis beyond the rigid motion
-  double foot_distance_mm = 0.0;  ///< of the nominal tip from the CAD
+  double foot_distance_mm = 0.0;  ///< of the nominal tip from the face that the path runs on
   bool has_place = false;  ///< false: the field gave none; the row stands where the rigid motion puts it
   bool from_data = false;
   bool air_move = false;
@@ -64,8 +65,11 @@ struct Correction {
 ///   throws    Error(kInput): an empty path, a row that is not finite or has no unit axis, no row within
 ///   reach of the
 ///             CAD; Error(kRecipe) from options.check(); Error(kBug) for a field whose rotation is none
-/// The shift is resolved in the nominal surface's frame at the foot, turned by the rigid motion. The sd of
-/// the tip adds the axis's sd times the lever from foot to tip. Cost O(N log n).
+/// A path on the far face (far_face_mm) keeps its feet on the CAD's face, through the thickness: the fibre
+/// from foot to tip turns with the deformed normal and keeps its length. Reach is counted from the far face,
+/// and "out of the material" is out of that face. The shift is resolved in the nominal surface's frame at the
+/// foot, turned by the rigid motion. The sd of the tip adds the axis's sd times the lever from foot to tip.
+/// Cost O(N log n).
 [[nodiscard]] Correction correct(const ToolPath& nominal, const SurfaceQuery& cad,
                                  const DeformationField& field, const RigidMotion& scan_from_cad,
                                  const CorrectOptions& options);

@@ -262,10 +262,23 @@ TEST(Recipe, MessagesNameWhatWhereFoundNeededNext) {
   for (const auto& [text, line] : cases) EXPECT_EQ(problem_of(text), line) << text;
 }
 
+TEST(Recipe, ThicknessIsNeededWhereItIsUsed) {
+  const auto problem_with = [](const std::string& part, const std::string& path) {
+    return problem_of("[part]\nnumber = \"A-1\"\ncad = \"a.stl\"\ncad_units = \"mm\"\n" + part +
+                      "[scan]\nunits = \"mm\"\n[toolpath]\n" + path);
+  };
+  const std::string far = "face = \"other\"\n", missing = "the thickness of the part is missing";
+  EXPECT_TRUE(problem_with("cad_is = \"mid\"\n", "").starts_with(missing));
+  EXPECT_TRUE(problem_with("cad_is = \"other_face\"\n", "").starts_with(missing));
+  EXPECT_TRUE(problem_with("cad_is = \"mid\"\nthickness_mm = 0.0\n", "").starts_with(missing));
+  EXPECT_TRUE(problem_with("", far).starts_with(missing));
+  EXPECT_EQ(problem_with("thickness_mm = 2.0\n", far), "");
+  EXPECT_EQ(problem_with("cad_is = \"solid\"\n", far), "");  // it says it itself
+}
+
 TEST(Recipe, WordsOfLaterVersionsSaySo) {
   const std::pair<std::string, std::string> cases[] = {
       {"[registration.subdivision]\nrefine = \"ceres\"\n", "use \"none\""},
-      {"[part]\ncad_is = \"mid\"\n", "use \"scanned_face\""},
       {"[robot]\ncontroller = \"krl\"\n", "use \"rapid\""},
   };
   for (const auto& [text, use] : cases) {

@@ -134,7 +134,7 @@ class SlowFePart : public testing::TestWithParam<Bounds> {
   RegistrationOptions by(RegistrationMethod method) const {
     RegistrationOptions options;
     options.method = method;
-    options.surface.prior.thickness_mm = part_.thickness_mm();
+    options.mid_depth_mm = 0.5 * part_.thickness_mm();
     return options;
   }
 };

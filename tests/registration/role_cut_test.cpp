@@ -26,7 +26,7 @@ RegistrationOptions cut_options(const PlatePart& part) {
   RegistrationOptions options;
   options.method = RegistrationMethod::kSurface;
   options.role = options.surface.role = ContourRole::kCut;
-  options.surface.prior.thickness_mm = part.shape().thickness_mm;
+  options.mid_depth_mm = 0.5 * part.shape().thickness_mm;
   return options;
 }
 

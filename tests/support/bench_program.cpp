@@ -41,15 +41,15 @@ int Words::count(const std::string& name, int otherwise, int least) const {
   return has(name) ? std::max(least, std::atoi(text(name).c_str())) : otherwise;
 }
 
-int run_program(const std::function<void()>& work) {
+int run_program(const std::function<void()>& work, std::ostream& errors) {
   try {
     work();
     return 0;
   } catch (const Error& error) {
-    std::cerr << error.what() << "\n";
+    errors << error.what() << "\n";
     return exit_code(error.fault());
   } catch (const std::exception& error) {
-    std::cerr << error.what() << "\n";
+    errors << error.what() << "\n";
     return 1;
   }
 }

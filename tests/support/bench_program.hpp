@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <ostream>
 #include <string>
 
 namespace arris::bench {
@@ -23,7 +24,7 @@ class Words {
 };
 
 /// Runs a benchmark; what it throws becomes a line on stderr and the exit code.
-[[nodiscard]] int run_program(const std::function<void()>& work);
+[[nodiscard]] int run_program(const std::function<void()>& work, std::ostream& errors);
 
 /// Replaces what stands between the two marker lines of a section of a page (of its only one: no name).
 /// Throws Error(kInput) when the page or a marker is missing, or it cannot be written.

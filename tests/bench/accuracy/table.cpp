@@ -36,6 +36,8 @@ const char* label(Method method) {
       return "the same, without stability points";
     case kPlain:
       return "our subdivision ICP, edge as extracted";
+    case kSupported:
+      return "our subdivision ICP, edge by support";
     default:
       return "**the whole method**";
   }

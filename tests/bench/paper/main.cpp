@@ -93,5 +93,5 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return run_program([&] { run(parse(argc, argv)); });
+  return run_program([&] { run(parse(argc, argv)); }, std::cerr);
 }
