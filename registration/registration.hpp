@@ -10,12 +10,15 @@
 #include "registration/edge_fit.hpp"
 #include "registration/edge_pairs.hpp"
 #include "registration/rigid_icp.hpp"
+#include "registration/segment_refine.hpp"
 #include "registration/subdivision_field.hpp"
 #include "registration/subdivision_icp.hpp"
 
 namespace arris {
 
 enum class RegistrationMethod { kRigid, kSubdivision };
+/// What follows subdivision ICP.
+enum class RefineMethod { kNone, kCeres };
 
 /// Everything the recipe may choose about registration.
 struct RegistrationOptions {
@@ -23,6 +26,7 @@ struct RegistrationOptions {
   CoarseAlignOptions coarse;
   RigidIcpOptions rigid;
   SubdivisionIcpOptions subdivision;
+  RefineMethod refine = RefineMethod::kNone;
   EdgeFitOptions edge;
   bool follow_edge = true;       ///< role `edge`
   double band_mm = 60.0;         ///< where the field speaks
@@ -40,6 +44,7 @@ struct Registration {
   std::vector<LoopAssignment> loops;  ///< one a loop of the scan: the contour it runs along, or dropped
   std::shared_ptr<const DeformationField> field;  ///< null when no pose was found
   std::vector<ContourResult> contours;  ///< one an accepted contour; of method rigid, with one rigid segment
+  SegmentRefinement refinement;         ///< of the segments' motions; empty unless asked for
   std::vector<std::string> refusals;    ///< in plain words
   std::vector<std::pair<std::string, double>>
       stage_residual_mm;            ///< distance found edge - carried nominal, rms

@@ -272,7 +272,6 @@ TEST(Recipe, WordsOfLaterVersionsSaySo) {
   const std::pair<std::string, std::string> cases[] = {
       {"[registration]\nmethod = \"surface\"\n", "use \"subdivision\""},
       {"[registration]\nmethod = \"projection\"\n", "use \"subdivision\""},
-      {"[registration.subdivision]\nrefine = \"ceres\"\n", "use \"none\""},
       {"[contour]\nrole = \"cut\"\n", "use \"edge\""},
       {"[robot]\ncontroller = \"krl\"\n", "use \"rapid\""},
   };

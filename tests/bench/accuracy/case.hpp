@@ -30,6 +30,7 @@ enum Method : std::size_t {
   kPaperNoSupport,  ///< the same without its stability points
   kPlain,           ///< our subdivision ICP on the edge points as extracted
   kWhole,           ///< the whole method: what `arris run` writes
+  kWholeRefined,    ///< the same with refine = "ceres"
   kMethodCount
 };
 

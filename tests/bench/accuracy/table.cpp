@@ -32,6 +32,8 @@ const char* label(Method method) {
       return "the same, without stability points";
     case kPlain:
       return "our subdivision ICP, edge as extracted";
+    case kWholeRefined:
+      return "the whole method, refined";
     default:
       return "**the whole method**";
   }
@@ -144,7 +146,8 @@ std::string case_table(const CaseResult& result) {
       "| | mean (worst) | max (worst) | normal | across | along | mean against rigid ICP | peak against "
       "rigid ICP | "
       "mean against best rigid | seeds |\n|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const Method method : {kNominal, kBestRigid, kRigidIcp, kPaper, kPaperNoSupport, kPlain, kWhole})
+  for (const Method method :
+       {kNominal, kBestRigid, kRigidIcp, kPaper, kPaperNoSupport, kPlain, kWhole, kWholeRefined})
     text += row_text(result, method);
   const std::string refused = refusal_lines(result);
   return text + (refused.empty() ? "" : "\n" + refused);
