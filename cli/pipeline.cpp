@@ -157,6 +157,25 @@ void describe_strain(const Registration& found, const Drawing& drawing, RunRecor
   record.strain_at_mid = drawing.thickness_mm.has_value();
 }
 
+void describe_refinement(const CadModel& cad, const SegmentRefinement& found, RunRecord& record) {
+  RefinementSummary& told = record.refinement;
+  told.asked = found.asked;
+  told.used = found.usable();
+  told.statement = found.statement();
+  if (found.asked && !found.usable()) record.notes.push_back(found.reason);
+  for (const RefineRound& r : found.rounds)
+    told.rounds.push_back({r.scale_sigmas, r.solver.cost_before, r.solver.cost_after, r.solver.iterations,
+                           r.solver.termination, r.move_mm});
+  for (const RefinedSegment& s : found.segments) {
+    const Segment& piece = found.motions[s.contour].subdivision().segments()[s.segment];
+    told.segments.push_back({cad.contours[s.contour].contour().id, piece.begin_mm, piece.end_mm, s.pairs,
+                             s.rms_before_mm, s.rms_after_mm});
+  }
+  for (const RefinedSeam& s : found.seams)
+    told.seams.push_back({cad.contours[s.contour].contour().id, s.before.arc_mm, s.before.jump_mm,
+                          s.after.jump_mm, s.before.turn_rad, s.after.turn_rad});
+}
+
 /// Scan loops that run along an accepted contour, and those that were left out.
 void describe_loops(const Registration& found, const ScanModel& scan, RunRecord& record) {
   for (std::size_t l = 0; l < scan.loops.size(); ++l) {
@@ -193,6 +212,7 @@ Processed process(const Recipe& as_written, const Drawing& drawing, Measurement&
   describe_strain(found, drawing, record);
   if (record.method == "subdivision") describe_segments(cad, found, record);
   describe_projection(cad, found, recipe.registration.projection.model, record);
+  describe_refinement(cad, found.refinement, record);
   processed.field_parameters = found.field->parameters();
 
   if (!inspect_only) {

@@ -41,6 +41,12 @@ void check_together(const std::filesystem::path& file, const Recipe& recipe,
            {},
            {},
            "remove it from contour.accept or contour.reject"});
+  if (recipe.registration.subdivision.refine != "none" && recipe.registration.method != "subdivision")
+    add({"the joint fit belongs to method = \"subdivision\"",
+         where("registration.subdivision"),
+         "method = \"" + recipe.registration.method + "\"",
+         "refine = \"none\", or method = \"subdivision\"",
+         {}});
   if (recipe.contour.role == "cut" && recipe.registration.method != "surface")
     add({"role = \"cut\" needs the surface field",
          where("registration"),

@@ -305,9 +305,8 @@ std::vector<Key> subdivision_keys(Recipe::Subdivision& s) {
        .words = {"sin2"}},
       {.name = "registration.subdivision.refine",
        .slot = &s.refine,
-       .about = "a joint fit of all segments afterwards",
-       .words = {"none"},
-       .later = {"ceres"}},
+       .about = "ceres: all segments are fitted together afterwards, with seams that a thin part can have",
+       .words = {"none", "ceres"}},
   };
 }
 

@@ -114,6 +114,7 @@ RegistrationOptions registration_options(const Recipe& recipe, int threads) {
   options.subdivision.stability = stability_of(s.stability_points);
   options.subdivision.stability_points = s.stability_count;
   options.subdivision.stability_distance_mm = s.stability_distance_mm;
+  options.refine = s.refine == "ceres" ? RefineMethod::kCeres : RefineMethod::kNone;
   options.subdivision.max_iterations = s.max_iterations;
   options.subdivision.stop_change_ratio = s.stop_change_ratio;
   options.threads = options.coarse.threads = options.rigid.threads = options.subdivision.threads =

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "acquisition/geometry/parallel_for.hpp"
+#include "registration/carried_curve.hpp"
 
 namespace arris {
 namespace {
@@ -55,35 +56,6 @@ double sigmoid(double x) {
   return x >= 0.0 ? 1.0 / (1.0 + std::exp(-x)) : std::exp(x) / (1.0 + std::exp(x));
 }
 
-/// The nominal contour carried to the scan, with its arc lengths kept.
-class CarriedCurve {
- public:
-  CarriedCurve(const Curve& nominal, const ContourMotion& motion)
-      : nominal_(nominal), curve_(carry(nominal, motion)) {}
-
-  /// Nominal arc length of the foot of a scan point.
-  double arc_of(const Eigen::Vector3d& p_scan_mm, double& distance_mm) const {
-    const CurveFoot foot = curve_.nearest(p_scan_mm);
-    distance_mm = foot.distance_mm;
-    const double begin = nominal_.arc_of_point_mm(foot.segment);
-    const double end = nominal_.arc_of_point_mm(foot.segment + 1);  // the total length after the last chord
-    return begin + foot.ratio * (end - begin);
-  }
-
- private:
-  static Contour carry(const Curve& nominal, const ContourMotion& motion) {
-    Contour carried = nominal.contour();
-    for (std::size_t i = 0; i < carried.points_mm.size(); ++i) {
-      const double s_mm = nominal.arc_of_point_mm(static_cast<int>(i));
-      carried.points_mm[i] = motion.at(s_mm) * nominal.contour().points_mm[i];
-    }
-    return carried;
-  }
-
-  const Curve& nominal_;
-  Curve curve_;
-};
-
 /// Curvature of the contour in the surface at s: positive where the material fans out (a hole's inside
 /// corner).
 double fan_per_mm(const Curve& curve, double arc_mm, double window_mm) {
@@ -129,7 +101,7 @@ class EdgeFitter {
 
  private:
   void collect() {
-    const CarriedCurve carried(curve_, motion_);
+    const CarriedCurve carried(motion_);
     const double outside_mm = 2.0 * scan_.spacing_mm + 2.0;
     std::vector<StripPoint> all(scan_.points_mm.size());
     parallel_for(all.size(), kChunk, options_.threads, [&](std::size_t begin, std::size_t end) {

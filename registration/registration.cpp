@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "registration/edge_pairs.hpp"
+#include "registration/seams.hpp"
 #include "registration/surface_stage.hpp"
 
 namespace arris {
@@ -192,24 +193,15 @@ Unseen longest_unseen(const EdgeFit& edge, bool closed) {
 void judge_seams(const CadModel& cad, Registration& result) {
   for (std::size_t c = 0; c < result.contours.size(); ++c) {
     const ContourMotion& motion = result.contours[c].motion;
-    const std::vector<Segment>& segments = motion.subdivision().segments();
     const double edge_limit_mm = 1.0 / (50.0 * std::max(result.contours[c].edge.density_per_mm2, 1e-9));
     const double limit_mm = kSeamMm + kSeamEdgeLimits * edge_limit_mm;
-    for (std::size_t z = 0; z < segments.size(); ++z) {
-      const std::size_t next = (z + 1) % segments.size();
-      if (next == z || (next == 0 && !cad.contours[c].closed())) continue;
-      const double s_mm = cad.contours[c].wrap_mm(segments[z].end_mm);
-      const Eigen::Vector3d p = cad.contours[c].point_mm(s_mm);
-      // along the contour a segment may slide: that moves no edge
-      Eigen::Vector3d apart = motion.fits()[z].scan_from_cad * p - motion.fits()[next].scan_from_cad * p;
-      const Eigen::Vector3d tangent = motion.fits()[z].scan_from_cad.linear() * cad.contours[c].tangent(s_mm);
-      apart -= apart.dot(tangent) * tangent;
-      if (apart.norm() < limit_mm) continue;
+    for (const Seam& seam : seams_of(motion)) {
+      if (seam.jump_mm < limit_mm) continue;
       char text[200];
       std::snprintf(
           text, sizeof text,
           "contour %d: the segments on both sides of s = %.0f mm disagree by %.1f mm (at most %.1f)",
-          cad.contours[c].contour().id, s_mm, apart.norm(), limit_mm);
+          cad.contours[c].contour().id, seam.arc_mm, seam.jump_mm, limit_mm);
       result.refusals.emplace_back(text);
     }
   }
@@ -297,6 +289,12 @@ void deform_by_subdivision(const CadModel& cad, const ScanModel& scan, const Reg
     earlier = moved;
     result.contours = with_edges(cad, scan, std::move(moved), options.edge);
   }
+  if (options.refine == RefineMethod::kCeres) {
+    EdgeData edge = sharpened(cad, scan, result.contours);
+    edge.correlated_ratio = std::max(1.0, options.edge.knot_mm / kSampleMm);
+    result.refinement = refine_segments(cad, scan, edge, earlier, options.subdivision, {});
+    result.contours = with_edges(cad, scan, result.refinement.motions, options.edge);
+  }
   result.field = std::make_shared<SubdivisionField>(cad, result.contours, options.band_mm,
                                                     options.role == ContourRole::kEdge);
 }
@@ -378,7 +376,9 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
     return result.contours[c].motion.at(s_mm) * p;  // the material, without the edge's own error
   };
   if (options.method != RegistrationMethod::kRigid)
-    result.stage_residual_mm.emplace_back(result.field->method(), edge_rms(cad, result.contours, carried));
+    result.stage_residual_mm.emplace_back(
+        result.refinement.usable() ? "subdivision, refined" : result.field->method(),
+        edge_rms(cad, result.contours, carried));
   measure_strain(cad, options, result);
   for (const ContourResult& contour : result.contours)
     result.density_per_mm2 = std::max(result.density_per_mm2, contour.edge.density_per_mm2);

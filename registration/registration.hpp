@@ -11,6 +11,7 @@
 #include "registration/edge_pairs.hpp"
 #include "registration/projection_field.hpp"
 #include "registration/rigid_icp.hpp"
+#include "registration/segment_refine.hpp"
 #include "registration/subdivision_field.hpp"
 #include "registration/subdivision_icp.hpp"
 #include "registration/surface_refine.hpp"
@@ -18,6 +19,8 @@
 namespace arris {
 
 enum class RegistrationMethod { kRigid, kSubdivision, kProjection, kSurface };
+/// What follows subdivision ICP.
+enum class RefineMethod { kNone, kCeres };
 
 /// Everything the recipe may choose about registration.
 struct RegistrationOptions {
@@ -26,6 +29,7 @@ struct RegistrationOptions {
   RigidIcpOptions rigid;
   SubdivisionIcpOptions subdivision;
   SurfaceOptions surface;
+  RefineMethod refine = RefineMethod::kNone;
   EdgeFitOptions edge;
   ProjectionOptions projection;
   ContourRole role = ContourRole::kEdge;
@@ -47,6 +51,7 @@ struct Registration {
   std::vector<ContourResult>
       contours;  ///< one an accepted contour; of methods rigid and projection, with one rigid segment
   std::vector<ContourProjection> projection;  ///< of method projection: one an accepted contour
+  SegmentRefinement refinement;               ///< of the segments' motions; empty unless asked for
   std::vector<std::string> refusals;          ///< in plain words
   std::vector<std::pair<std::string, double>>
       stage_residual_mm;            ///< distance found edge - carried nominal, rms

@@ -76,6 +76,7 @@ class ContourMotion {
 struct EdgeData {
   std::vector<Eigen::Vector3d> points_mm;  ///< scan frame
   double sigma_across_mm = 1.0;            ///< how far they scatter across the edge
+  double correlated_ratio = 1.0;           ///< so many points share one error (samples of one spline)
   std::vector<std::size_t> contour;        ///< of each point, where known (a sharpened edge); else empty
   std::vector<double> arc_mm;              ///< and its place on that contour
 };

@@ -18,8 +18,9 @@ constexpr double kStrayRatio = 5e-3, kStrayRatioPerMm = 0.01, kMostStrayRatio = 
 constexpr double kFineCellRatio = 0.4,
                  kCellRatio = 0.6;  // of the node spacing: to place nodes; of the priors
 constexpr std::size_t kMostNodes = 400;
-constexpr double kGaugeMm = 50.0;    // weak pull to the rigid start, for motions that nothing else holds
-constexpr double kProximalMm = 5.0;  // a round's moves along such motions stay small
+constexpr double kGaugeMm = 50.0;       // weak pull to the rigid start, for motions that nothing else holds
+constexpr double kProximalMm = 5.0;     // a round's moves along such motions stay small
+constexpr double kLeastSigmaMm = 0.02;  // the drawing's own facets
 constexpr double kSettledMm = 1e-3, kSettledEdgeLimits = 0.01;  // moves of a round that no longer matter
 constexpr double kUnknownThicknessWiden = 2.0;                  // the mid-surface's strain is then not known
 constexpr std::size_t kParts = 2;  // chunks of a list: each needs a system of its own
@@ -105,7 +106,8 @@ class SurfaceFitter {
   void look() {
     pair_surface(cad_, scan_, points_, fit_.scan_from_cad, *fit_.basis, fit_.shift_mm,
                  4.0 * options_.start_scale_mm + 10.0, options_.threads, pairs_);
-    fit_.sigma_mm = std::max(residual_sigma_mm(pairs_, scale_mm_), 0.5 * scan_.noise_sigma_mm + 1e-3);
+    fit_.sigma_mm =
+        std::max({residual_sigma_mm(pairs_, scale_mm_), 0.5 * scan_.noise_sigma_mm, kLeastSigmaMm});
     fit_.pairs = static_cast<std::size_t>(
         std::count_if(pairs_.begin(), pairs_.end(), [](const SurfacePair& pair) { return pair.on_face; }));
     strips_->update(pairs_, fit_.shift_mm, strip_reach_mm_, kGateSigmas * fit_.sigma_mm, options_.threads);

@@ -274,6 +274,33 @@ std::string projection_table(const RunRecord& record) {
          tag("div", tag("table", rows), "scroll");
 }
 
+std::string refinement_tables(const RefinementSummary& summary) {
+  if (!summary.asked) return {};
+  std::string rounds = number_row(
+      {"round", "scale, sigmas", "cost before", "cost after", "steps", "ended", "largest move, mm"}, "th");
+  for (std::size_t i = 0; i < summary.rounds.size(); ++i) {
+    const RefinementSummary::Round& r = summary.rounds[i];
+    rounds +=
+        number_row({std::to_string(i + 1), mm(r.scale_sigmas, 1), mm(r.cost_before, 2), mm(r.cost_after, 2),
+                    std::to_string(r.iterations), escaped(r.termination), mm(r.move_mm, 4)});
+  }
+  std::string html = tag("h3", "Joint fit of the segments") + tag("p", escaped(summary.statement)) +
+                     tag("div", tag("table", rounds), "scroll");
+  if (!summary.used) return html;
+  std::string segments =
+      number_row({"contour", "from, mm", "to, mm", "edge points", "rms before, mm", "rms after, mm"}, "th");
+  for (const auto& s : summary.segments)
+    segments += number_row({std::to_string(s.contour), mm(s.from_mm, 1), mm(s.to_mm, 1),
+                            std::to_string(s.pairs), mm(s.rms_before_mm), mm(s.rms_after_mm)});
+  std::string seams = number_row({"contour", "seam at, mm", "jump before, mm", "jump after, mm",
+                                  "turn before, mrad", "turn after, mrad"},
+                                 "th");
+  for (const auto& s : summary.seams)
+    seams += number_row({std::to_string(s.contour), mm(s.arc_mm, 1), mm(s.jump_before_mm),
+                         mm(s.jump_after_mm), mm(1e3 * s.turn_before_rad, 1), mm(1e3 * s.turn_after_rad, 1)});
+  return html + tag("div", tag("table", segments), "scroll") + tag("div", tag("table", seams), "scroll");
+}
+
 std::string registration_section(const RunRecord& record) {
   std::string html;
   if (!record.stage_residual_mm.empty()) {
@@ -292,6 +319,7 @@ std::string registration_section(const RunRecord& record) {
     html += tag("h3", "Segments") + tag("div", tag("table", rows), "scroll");
   }
   html += projection_table(record);
+  html += refinement_tables(record.refinement);
   if (record.method != "rigid" && record.accepted())
     html += tag("p", "Mean in-surface strain along the contours: " + escaped(strain_text(record)) + ".");
   return html.empty() ? html : tag("h2", "Registration: " + escaped(record.method)) + html;

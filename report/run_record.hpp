@@ -12,6 +12,7 @@
 #include "acquisition/types/point_cloud.hpp"
 #include "acquisition/types/triangle_mesh.hpp"
 #include "registration/fixture_targets.hpp"
+#include "report/refinement_summary.hpp"
 #include "toolpath/correct.hpp"
 #include "toolpath/robot/row_uncertainty.hpp"
 #include "toolpath/toolpath.hpp"
@@ -120,6 +121,7 @@ struct RunRecord {
     std::optional<Bending> bending = std::nullopt;
   };
   std::vector<ProjectionSummary> projection;
+  RefinementSummary refinement;  ///< empty unless the recipe asks for it
   std::vector<std::pair<std::string, double>>
       stage_residual_mm;            ///< "rigid", "subdivision": rms of the edge pairs
   double mean_strain_ratio = 0.0;   ///< mean in-surface strain along the contours, see strain_at_mid

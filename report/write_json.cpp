@@ -150,6 +150,34 @@ Json projection(const RunRecord::ProjectionSummary& p) {
           {"bending", p.bending ? bending(*p.bending) : Json(nullptr)}};
 }
 
+Json refinement(const RefinementSummary& summary) {
+  if (!summary.asked) return nullptr;
+  Json json = {{"used", summary.used}, {"statement", summary.statement}};
+  for (const char* list : {"rounds", "segments", "seams"}) json[list] = Json::array();
+  for (const auto& r : summary.rounds)
+    json["rounds"].push_back({{"scale_sigmas", number(r.scale_sigmas)},
+                              {"cost_before", number(r.cost_before)},
+                              {"cost_after", number(r.cost_after)},
+                              {"iterations", r.iterations},
+                              {"termination", r.termination},
+                              {"move_mm", number(r.move_mm)}});
+  for (const auto& s : summary.segments)
+    json["segments"].push_back({{"contour", s.contour},
+                                {"from_mm", number(s.from_mm)},
+                                {"to_mm", number(s.to_mm)},
+                                {"pairs", s.pairs},
+                                {"rms_before_mm", number(s.rms_before_mm)},
+                                {"rms_after_mm", number(s.rms_after_mm)}});
+  for (const auto& s : summary.seams)
+    json["seams"].push_back({{"contour", s.contour},
+                             {"arc_mm", number(s.arc_mm)},
+                             {"jump_before_mm", number(s.jump_before_mm)},
+                             {"jump_after_mm", number(s.jump_after_mm)},
+                             {"turn_before_rad", number(s.turn_before_rad)},
+                             {"turn_after_rad", number(s.turn_after_rad)}});
+  return json;
+}
+
 Json registration(const RunRecord& record) {
   Json json;
   json["method"] = record.method;
@@ -173,6 +201,7 @@ Json registration(const RunRecord& record) {
                                 {"stop", s.stop}});
   json["projection"] = Json::array();
   for (const auto& p : record.projection) json["projection"].push_back(projection(p));
+  json["refinement"] = refinement(record.refinement);
   return json;
 }
 

@@ -278,7 +278,6 @@ TEST(Recipe, ThicknessIsNeededWhereItIsUsed) {
 
 TEST(Recipe, WordsOfLaterVersionsSaySo) {
   const std::pair<std::string, std::string> cases[] = {
-      {"[registration.subdivision]\nrefine = \"ceres\"\n", "use \"none\""},
       {"[robot]\ncontroller = \"krl\"\n", "use \"rapid\""},
   };
   for (const auto& [text, use] : cases) {

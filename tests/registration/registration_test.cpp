@@ -61,6 +61,45 @@ TEST(RegisterPart, SameBytesForAnyThreadCount) {
   }
 }
 
+TEST(RegisterPart, SameBytesForAnyThreadCountWithTheJointFit) {
+  const synthetic::FePart part = scenes::fe("sheet");
+  const CadModel cad = scenes::cad_of(part);
+  Trial trial = scenes::trial_of(part, hard(), 2);
+  std::vector<double> first;
+  for (const int threads : {1, 2, 8}) {
+    RegistrationOptions options = on_threads(threads);
+    options.method = RegistrationMethod::kSubdivision;
+    options.refine = RefineMethod::kCeres;
+    ScanModel scan = copy_of(trial.scan);
+    const Registration found = register_part(cad, scan, options);
+    ASSERT_TRUE(found.usable());
+    EXPECT_TRUE(found.refinement.usable()) << found.refinement.reason;
+    if (first.empty()) first = found.field->parameters();
+    EXPECT_EQ(found.field->parameters(), first) << threads;
+  }
+}
+
+TEST(RegisterPart, JointFitIsNotMadeUnlessAskedForAndHelpsOnTheNoseCone) {
+  const synthetic::FePart part = scenes::fe("nosecone");
+  const CadModel cad = scenes::cad_of(part);
+  double without = 0.0, with = 0.0;
+  for (const std::uint64_t seed : {31U, 32U}) {
+    Trial trial = scenes::trial_of(part, {}, seed);
+    ScanModel again = copy_of(trial.scan);
+    RegistrationOptions options;
+    options.method = RegistrationMethod::kSubdivision;
+    const Registration plain = register_part(cad, trial.scan, options);
+    options.refine = RefineMethod::kCeres;
+    const Registration refined = register_part(cad, again, options);
+    ASSERT_TRUE(plain.usable() && refined.usable());
+    EXPECT_FALSE(plain.refinement.asked);
+    EXPECT_TRUE(plain.refinement.rounds.empty() && plain.refinement.motions.empty());
+    without += field_error(cad, trial, plain).mean_mm;
+    with += field_error(cad, trial, refined).mean_mm;
+  }
+  EXPECT_LT(with, 0.8 * without);
+}
+
 TEST(RegisterPart, MovingTheScanMovesTheAnswerAndNothingElse) {
   // Not the sheet: its circle leaves the turn about its axis free, and rounding chooses among equal starts.
   const synthetic::FePart part = scenes::fe("porthole");

@@ -80,7 +80,9 @@ TEST(SurfaceBasis, IsSmoothAcrossTheBand) {
     const BasisRow row = plate.basis.row(plate.cad.contours[0].point_mm(200.0 + x), n);
     ASSERT_TRUE(row.usable());
     const Eigen::Vector3d here = row.combine(BasisRow::kValue, values);
-    if (x > -20.0) EXPECT_LT((here - before).norm(), 0.01);
+    if (x > -20.0) {
+      EXPECT_LT((here - before).norm(), 0.01);
+    }
     before = here;
   }
 }

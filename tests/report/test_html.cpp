@@ -83,6 +83,7 @@ TEST(WriteHtml, EscapesWhatComesFromOutside) {
   record.alignment.side_decided_by = record.alignment.start = evil;
   record.alignment.free_directions = {evil};
   record.segments[0].stop = record.contour_errors[0].contour = record.stage_residual_mm[0].first = evil;
+  record.refinement.statement = record.refinement.rounds[0].termination = evil;
   record.judged_as_scanned.text = record.judged_pulled_back.text = evil;
   const std::string html = write_html(record);
   EXPECT_FALSE(has(html, "<script>alert"));

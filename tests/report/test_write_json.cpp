@@ -30,6 +30,11 @@ TEST(WriteJson, ParsesAndHoldsWhatTheRunFound) {
   EXPECT_NEAR(result["alignment"]["scan_from_cad"][0][3].get<double>(), 10120.0, 1e-9);
   EXPECT_NEAR(result["alignment"]["covariance_6x6"][0].get<double>(), 1.23457e-9, 1e-15);
   EXPECT_EQ(result["registration"]["segments"].size(), 6U);
+  const json& refinement = result["registration"]["refinement"];
+  EXPECT_TRUE(refinement["used"].get<bool>());
+  EXPECT_EQ(refinement["rounds"][0]["termination"], "iteration limit");
+  EXPECT_EQ(refinement["segments"][0]["pairs"], 48);
+  EXPECT_NEAR(refinement["seams"][0]["jump_after_mm"].get<double>(), 0.031, 1e-9);
   EXPECT_EQ(result["results"]["i_correction"]["path"]["points"], record.nominal_path.points.size());
   EXPECT_EQ(result["worst_points"].size(), 10U);
   EXPECT_TRUE(result["program"]["written"].get<bool>());

@@ -26,6 +26,7 @@ enum Method : std::size_t {
   kPlain,           ///< our subdivision ICP on the edge points as extracted
   kSupported,       ///< our subdivision ICP on the edge by one-sided support; refused or not
   kWhole,           ///< the whole method: what `arris run` writes
+  kWholeRefined,    ///< the same with refine = "ceres"
   kMethodCount
 };
 

@@ -38,6 +38,8 @@ const char* label(Method method) {
       return "our subdivision ICP, edge as extracted";
     case kSupported:
       return "our subdivision ICP, edge by support";
+    case kWholeRefined:
+      return "our subdivision ICP, edge by support, joint fit";
     default:
       return "**the whole method**";
   }
@@ -150,8 +152,8 @@ std::string case_table(const CaseResult& result) {
       "| | mean (worst) | max (worst) | normal | across | along | mean against rigid ICP | peak against "
       "rigid ICP | "
       "mean against best rigid | seeds |\n|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const Method method :
-       {kNominal, kBestRigid, kRigidIcp, kParabola, kHeightSpline, kPaper, kPaperNoSupport, kPlain, kSupported, kWhole})
+  for (const Method method : {kNominal, kBestRigid, kRigidIcp, kParabola, kHeightSpline, kPaper,
+                              kPaperNoSupport, kPlain, kSupported, kWholeRefined, kWhole})
     text += row_text(result, method);
   const std::string refused = refusal_lines(result);
   return text + (refused.empty() ? "" : "\n" + refused);

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "registration/subdivision_icp.hpp"
+
+namespace arris {
+
+/// The nominal contour carried to the scan by its blended motion, with its nominal arc lengths kept. The
+/// motion's own copy of the contour is used, and must outlive this.
+class CarriedCurve {
+ public:
+  explicit CarriedCurve(const ContourMotion& motion);
+  /// Nominal arc length of the foot of a scan point; O(log n).
+  [[nodiscard]] double arc_of(const Eigen::Vector3d& p_scan_mm, double& distance_mm) const;
+
+ private:
+  const Curve& nominal_;
+  Curve curve_;
+};
+
+}  // namespace arris
