@@ -298,7 +298,12 @@ std::string refinement_tables(const RefinementSummary& summary) {
   for (const auto& s : summary.seams)
     seams += number_row({std::to_string(s.contour), mm(s.arc_mm, 1), mm(s.jump_before_mm),
                          mm(s.jump_after_mm), mm(1e3 * s.turn_before_rad, 1), mm(1e3 * s.turn_after_rad, 1)});
-  return html + tag("div", tag("table", segments), "scroll") + tag("div", tag("table", seams), "scroll");
+  return html + tag("div", tag("table", segments), "scroll") +
+         tag("p",
+             "Residuals are distances to the edge as it was found before, across and normal to it. They may "
+             "grow: a segment gives up some of its own points where its neighbours contradict them. Then the "
+             "edge is found once more, and the path follows it.") +
+         tag("div", tag("table", seams), "scroll");
 }
 
 std::string registration_section(const RunRecord& record) {
