@@ -163,6 +163,33 @@ std::string coordinates(const Eigen::Vector3d& p) {
   return mm(p.x(), 2) + ", " + mm(p.y(), 2) + ", " + mm(p.z(), 2);
 }
 
+std::string bending_text(const RunRecord::ProjectionSummary& p) {
+  if (!p.bending) return {};
+  return tag("p", "Contour " + std::to_string(p.contour) + ": bending radius " +
+                      mm(0.5 / p.bending->alpha_per_mm, 0) + " mm, about an axis through (" +
+                      coordinates(p.bending->axis_point_mm) +
+                      ") in the CAD frame, whose direction is known to " +
+                      mm(p.bending->axis_sd_rad * 180.0 / std::numbers::pi, 1) + "&deg;.");
+}
+
+std::string projection_table(const RunRecord& record) {
+  if (record.projection.empty()) return {};
+  std::string bendings, rows = number_row({"contour", "model", "points", "scatter, mm",
+                                           "height, rms / max, mm", "across, rms / max, mm"},
+                                          "th");
+  for (const auto& p : record.projection) {
+    rows += number_row({std::to_string(p.contour), escaped(p.model), std::to_string(p.points),
+                        mm(p.scatter_mm), mm(p.height_rms_mm) + " / " + mm(p.height_max_mm),
+                        mm(p.across_rms_mm) + " / " + mm(p.across_max_mm)});
+    bendings += bending_text(p);
+  }
+  return tag("h3", "Projection") +
+         tag("p",
+             "What the model leaves between itself and the scan. An edge that moved in the surface "
+             "(across) is not followed by a projection.") +
+         tag("div", tag("table", rows), "scroll") + bendings;
+}
+
 }  // namespace
 
 std::string deviation_section(const RunRecord& record) {
@@ -248,30 +275,6 @@ std::string worst_points_section(const RunRecord& record) {
       tag("p", "The highest (H) and lowest (L) scan points, each at least " + mm(flag_spacing_mm(record), 1) +
                    " mm from the next; x, y, z in mm. They belong to result (ii).");
   return html + tag("div", tag("table", rows), "scroll");
-}
-
-std::string bending_text(const RunRecord::ProjectionSummary& p) {
-  if (!p.bending) return "&ndash;";
-  return "radius " + mm(0.5 / p.bending->alpha_per_mm, 0) + " mm, axis through " +
-         coordinates(p.bending->axis_point_mm) + ", known to " +
-         mm(p.bending->axis_sd_rad * 180.0 / std::numbers::pi, 1) + "&deg;";
-}
-
-std::string projection_table(const RunRecord& record) {
-  if (record.projection.empty()) return {};
-  std::string rows = number_row({"contour", "model", "points", "scatter, mm", "height left, rms / max, mm",
-                                 "edge across, rms / max, mm", "bending, CAD frame"},
-                                "th");
-  for (const auto& p : record.projection)
-    rows += number_row(
-        {std::to_string(p.contour), escaped(p.model), std::to_string(p.points), mm(p.scatter_mm),
-         std::isfinite(p.height_rms_mm) ? mm(p.height_rms_mm) + " / " + mm(p.height_max_mm) : "&ndash;",
-         mm(p.across_rms_mm) + " / " + mm(p.across_max_mm), bending_text(p)});
-  return tag("h3", "Projection") +
-         tag("p",
-             "What the model leaves between itself and the scan. An edge that moved in the surface is "
-             "not followed by a projection.") +
-         tag("div", tag("table", rows), "scroll");
 }
 
 std::string refinement_tables(const RefinementSummary& summary) {
