@@ -67,7 +67,8 @@ std::string what_is_judged(const std::string& method) {
   if (method == "rigid") return "found edge against the nominal carried rigidly";
   if (method == "surface") return "found edge against the nominal carried by the surface field";
   if (method == "projection")
-    return "found edge against the nominal carried by the projection (an error of the edge cannot be told from "
+    return "found edge against the nominal carried by the projection (an error of the edge cannot be told "
+           "from "
            "bending that moved it in the surface; the uncertainty holds both)";
   return "found edge against the nominal carried by the segments (an error longer than a segment is "
          "followed, "
