@@ -4,21 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/geometry/median.hpp"
 #include "acquisition/geometry/parallel_for.hpp"
 #include "registration/carried_curve.hpp"
+#include "registration/edge_support.hpp"
+#include "registration/seen_bins.hpp"
 
 namespace arris {
 namespace {
 
-constexpr double kBalance = 0.541;  // log(1 + exp(0.541)) = 1: see fit_edge
 constexpr double kStartTauMm = 2.0;
 constexpr double kTauShrink = 0.6;
 constexpr double kTauFloorMm = 0.03;
 constexpr double kStrayShare = 0.02;  // of the density: points beyond the edge that are no edge at all
 constexpr double kGateSigmas = 4.0;   // height residual of a point that takes part in the edge
-constexpr double kPointsPerBin = 8.0;
 constexpr int kRounds = 30;
-constexpr double kLeastExpectedRatio = 0.5;  // of the scan's median density, beside the contour
 constexpr double kEdgeLimitLengthMm = 50.0;  // an edge is known up to a smooth shift over about this length
 constexpr double kGapBendPerMm = 5e-4;       // how much a part may bend between the two sides of a gap
 constexpr std::size_t kChunk = 512;
@@ -33,13 +33,6 @@ struct StripPoint {
   bool inlier = true;
 };
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double variance_at(const SplineRow& row, const Eigen::MatrixXd& covariance) {
   double variance = 0.0;
   for (std::size_t a = 0; a < 4; ++a)
@@ -50,19 +43,6 @@ double variance_at(const SplineRow& row, const Eigen::MatrixXd& covariance) {
 
 double unseen_bend_mm(double to_seen_mm) {
   return 0.5 * kGapBendPerMm * to_seen_mm * to_seen_mm;
-}
-
-double sigmoid(double x) {
-  return x >= 0.0 ? 1.0 / (1.0 + std::exp(-x)) : std::exp(x) / (1.0 + std::exp(x));
-}
-
-/// Curvature of the contour in the surface at s: positive where the material fans out (a hole's inside
-/// corner).
-double fan_per_mm(const Curve& curve, double arc_mm, double window_mm) {
-  const Eigen::Vector3d before = curve.tangent(curve.wrap_mm(arc_mm - window_mm));
-  const Eigen::Vector3d after = curve.tangent(curve.wrap_mm(arc_mm + window_mm));
-  const Eigen::Vector3d inward = curve.normal(arc_mm).cross(curve.tangent(arc_mm));
-  return -(after - before).dot(inward) / (2.0 * window_mm);
 }
 
 class EdgeFitter {
@@ -94,7 +74,7 @@ class EdgeFitter {
   EdgeFit run() {
     collect();
     fit_height();
-    find_seen_bins();
+    find_seen();
     fit_across();
     return std::move(fit_);
   }
@@ -118,11 +98,9 @@ class EdgeFitter {
     });
     for (StripPoint& p : all)
       if (p.inlier) points_.push_back(p);
-    const double window_mm = std::min(6.0, curve_.length_mm() / 20.0);
     for (StripPoint& p : points_) {
       p.row = fit_.spline.at(p.arc_mm);
-      const double fan = 1.0 + fan_per_mm(curve_, p.arc_mm, window_mm) * std::max(0.0, p.across_mm);
-      p.curve_weight = 1.0 / std::clamp(fan, 0.3, 3.0);
+      p.curve_weight = fan_weight(fan_per_mm(curve_, p.arc_mm), p.across_mm);
     }
   }
 
@@ -197,36 +175,17 @@ class EdgeFitter {
   }
 
   /// Bins of the contour in which the scan shows material right up to the edge.
-  void find_seen_bins() {
+  void find_seen() {
     double inliers = 0.0;
     for (const StripPoint& p : points_)
       if (p.inlier && p.across_mm > -scan_.spacing_mm && p.across_mm < strip_mm_) inliers += p.curve_weight;
-    // Where most of the contour is missing the scan's own spacing still says what to expect.
-    const double expected_per_mm =
-        kLeastExpectedRatio * strip_mm_ / std::max(1e-9, scan_.spacing_mm * scan_.spacing_mm);
-    const double mean_per_mm = std::max({1e-9, inliers / curve_.length_mm(), expected_per_mm});
-    const double bin_mm = std::clamp(kPointsPerBin / mean_per_mm, 2.0, curve_.length_mm() / 8.0);
-    const std::size_t bins = static_cast<std::size_t>(std::floor(curve_.length_mm() / bin_mm));
-    fit_.bin_mm = curve_.length_mm() / static_cast<double>(bins);
-    std::vector<double> all(bins, 0.0), near(bins, 0.0);
-    for (const StripPoint& p : points_) {
-      if (!p.inlier || p.across_mm > strip_mm_) continue;
-      const std::size_t b = std::min(bins - 1, static_cast<std::size_t>(p.arc_mm / fit_.bin_mm));
-      all[b] += p.curve_weight;
-      if (p.across_mm < 0.5 * strip_mm_) near[b] += p.curve_weight;
-    }
-    const double expected = expected_per_mm * fit_.bin_mm;
-    const double usual = std::max(median_of(all), expected);
-    const double usual_near = std::max(median_of(near), 0.5 * expected);
-    fit_.seen.assign(bins, 1);
-    for (std::size_t b = 0; b < bins; ++b)
-      if (near[b] < 0.2 * usual_near || all[b] < 0.2 * usual) fit_.seen[b] = 0;
-    const std::vector<char> sure = fit_.seen;
-    for (std::size_t b = 0; b < bins; ++b) {  // the rim of a gap cuts its neighbours too
-      const bool beside_gap = !sure[(b + 1) % bins] || !sure[(b + bins - 1) % bins];
-      if (beside_gap && near[b] < 0.6 * usual_near) fit_.seen[b] = 0;
-    }
-    fit_.density_per_mm2 = usual / (fit_.bin_mm * strip_mm_);
+    std::vector<BesidePoint> beside;
+    for (const StripPoint& p : points_)
+      if (p.inlier && p.across_mm <= strip_mm_) beside.push_back({p.arc_mm, p.across_mm, p.curve_weight});
+    SeenBins found = find_seen_bins(beside, inliers, curve_.length_mm(), strip_mm_, scan_.spacing_mm);
+    fit_.bin_mm = found.bin_mm;
+    fit_.seen = std::move(found.seen);
+    fit_.density_per_mm2 = found.density_per_mm2;
   }
 
   /// Newton on the one-sided potential, tau shrinking from kStartTauMm to 1 / (density * knot).
@@ -256,18 +215,13 @@ class EdgeFitter {
                      Eigen::MatrixXd& curvature) {
     curvature = prior;
     Eigen::VectorXd gradient = prior * fit_.across;
+    const EdgeSupport support{tau, strip_mm_, kStrayShare};
     for (const StripPoint* p : active) {
-      const double g = p->across_mm - p->row.dot(fit_.across);
-      if (g > strip_mm_) continue;
-      const double x = g / tau - kBalance;
-      const double inside = sigmoid(x);
-      const double trusted = inside / (inside + kStrayShare);
-      const double outward =
-          p->curve_weight * trusted * (1.0 - inside) / tau;  // the point pushes the edge outward
-      const double inward = g > 0.0 ? p->curve_weight / strip_mm_ : 0.0;
-      const double bend = p->curve_weight * trusted * bounded_curvature(x) / (tau * tau);
+      const EdgeSupport::Pull pull = support.at(p->across_mm - p->row.dot(fit_.across));
+      const double slope = p->curve_weight * pull.slope_per_mm;
+      const double bend = p->curve_weight * pull.curvature_per_mm2;
       for (std::size_t a = 0; a < 4; ++a) {
-        gradient[p->row.index[a]] += (outward - inward) * p->row.value[a];
+        gradient[p->row.index[a]] -= slope * p->row.value[a];
         for (std::size_t b = 0; b < 4; ++b)
           curvature(p->row.index[a], p->row.index[b]) += bend * p->row.value[a] * p->row.value[b];
       }
@@ -275,14 +229,6 @@ class EdgeFitter {
     const Eigen::VectorXd step = curvature.ldlt().solve(gradient);
     fit_.across -= step;
     return step.cwiseAbs().maxCoeff();
-  }
-
-  /// Curvature of -log sigmoid, with the quadratic bound tanh(x/2) / (2x) where Newton would overshoot (x <
-  /// 0).
-  static double bounded_curvature(double x) {
-    if (x < -1e-6) return std::tanh(0.5 * x) / (2.0 * x);
-    const double s = sigmoid(x);
-    return s * (1.0 - s);
   }
 
   const CadModel& cad_;

@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "acquisition/geometry/median.hpp"
+
 namespace arris {
 
 EdgePair pair_edge(const CadModel& cad, const Eigen::Vector3d& p_cad_mm, double reach_mm) {
@@ -40,9 +42,7 @@ std::vector<LoopAssignment> assign_loops(const CadModel& cad, const std::vector<
     }
     LoopAssignment assignment;
     if (!distance_mm.empty()) {
-      const auto middle = distance_mm.begin() + static_cast<std::ptrdiff_t>(distance_mm.size() / 2);
-      std::nth_element(distance_mm.begin(), middle, distance_mm.end());
-      assignment.median_mm = *middle;
+      assignment.median_mm = median_of(std::move(distance_mm));
       const std::size_t contour =
           static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
       const double size_mm = cad.contours[contour].length_mm() / 6.28;

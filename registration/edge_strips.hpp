@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "registration/carried_contour.hpp"
+#include "registration/seen_bins.hpp"
 #include "registration/surface_pairs.hpp"
 
 namespace arris {
@@ -35,8 +36,6 @@ class EdgeStrips {
   [[nodiscard]] const std::vector<ContourStation>& stations(std::size_t edge) const {
     return edges_[edge].stations;
   }
-  /// Median over the bins; points per mm^2.
-  [[nodiscard]] double density_per_mm2(std::size_t edge) const { return edges_[edge].density_per_mm2; }
   /// Scale of the support at which an edge known up to a smooth shift over `share_ratio` of its length shows
   /// itself: 1 / (density * share * length), the largest over the edges.
   [[nodiscard]] double finest_tau_mm(double share_ratio) const;
@@ -48,10 +47,8 @@ class EdgeStrips {
     const Curve* curve = nullptr;
     std::vector<ContourStation> stations;
     std::vector<Eigen::Vector3d> inward;  // deformed, one a station
-    std::vector<char> seen;
-    double bin_mm = 1.0, density_per_mm2 = 0.0;
+    SeenBins bins;
   };
-  [[nodiscard]] std::size_t bin_of(const Edge& edge, double arc_mm) const;
   void find_seen(std::size_t e);
 
   std::vector<Edge> edges_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace arris {
@@ -31,5 +32,11 @@ struct EdgeSupport {
     return pull;
   }
 };
+
+/// Weight of a point across_mm inside a bent edge: the strip's area per length of the edge grows where the
+/// material fans out (Curve's fan_per_mm), and so would the number of its points.
+[[nodiscard]] inline double fan_weight(double fan_per_mm, double across_mm) {
+  return 1.0 / std::clamp(1.0 + fan_per_mm * std::max(0.0, across_mm), 0.3, 3.0);
+}
 
 }  // namespace arris

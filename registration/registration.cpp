@@ -156,13 +156,14 @@ double stretch(const CadModel& cad, const DeformationField& field, double depth_
 void measure_strain(const CadModel& cad, const RegistrationOptions& options, Registration& result) {
   if (options.method == RegistrationMethod::kRigid) return;  // it does not look for any
   // The surface field hardly stretches by its prior: a rim that is longer shows in the edge it follows.
-  const SubdivisionField segments(cad, result.contours, options.band_mm, false);
-  const DeformationField& shape = options.method == RegistrationMethod::kSurface
-                                      ? *result.field
-                                      : static_cast<const DeformationField&>(segments);
-  result.face_strain_ratio = stretch(cad, shape, 0.0);
+  const std::shared_ptr<const DeformationField> shape =
+      options.method == RegistrationMethod::kSurface
+          ? result.field
+          : std::make_shared<SubdivisionField>(cad, result.contours, options.band_mm, false);
+  result.face_strain_ratio = stretch(cad, *shape, 0.0);
   result.mean_strain_ratio =
-      options.mid_depth_mm > 0.0 ? stretch(cad, shape, options.mid_depth_mm) : result.face_strain_ratio;
+      options.mid_depth_mm > 0.0 ? stretch(cad, *shape, options.mid_depth_mm) : result.face_strain_ratio;
+  if (options.role == ContourRole::kCut) return;  // no rim that could be longer than drawn
   double length = 0.0, limit_mm = 0.0;
   for (const ContourResult& contour : result.contours) {
     length += contour.motion.nominal().length_mm();
@@ -219,6 +220,16 @@ void judge_residuals(const CadModel& cad, const ScanModel& scan, Registration& r
         cad.contours[c].contour().id, result.contours[c].edge.residual_sigma_mm, scan.noise_sigma_mm);
     result.refusals.emplace_back(text);
   }
+}
+
+/// Share of the contours' length on which the edge was seen.
+double seen_ratio(const std::vector<ContourResult>& contours) {
+  double seen = 0.0, length = 0.0;
+  for (const ContourResult& contour : contours) {
+    seen += contour.edge.seen_ratio() * contour.motion.nominal().length_mm();
+    length += contour.motion.nominal().length_mm();
+  }
+  return length > 0.0 ? seen / length : 0.0;
 }
 
 void judge_coverage(const CadModel& cad, const RegistrationOptions& options, Registration& result) {
@@ -366,7 +377,9 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   for (const Curve& curve : posed.contours) size_mm = std::max(size_mm, curve.length_mm() / 6.28);
   result.free_directions = free_directions(result.rigid.information, result.rigid.pivot_mm, size_mm);
   deform(cad, scan, options, result);
-  if (!result.usable() || cut) return result;
+  if (!result.usable()) return result;
+  measure_strain(cad, options, result);
+  if (cut) return result;
   const RigidMotion& pose = result.rigid.scan_from_cad;
   result.stage_residual_mm.emplace_back(
       "rigid", edge_rms(cad, result.contours,
@@ -379,9 +392,9 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
     result.stage_residual_mm.emplace_back(
         result.refinement.usable() ? "subdivision, refined" : result.field->method(),
         edge_rms(cad, result.contours, carried));
-  measure_strain(cad, options, result);
   for (const ContourResult& contour : result.contours)
     result.density_per_mm2 = std::max(result.density_per_mm2, contour.edge.density_per_mm2);
+  result.seen_ratio = seen_ratio(result.contours);
   judge_coverage(cad, options, result);
   if (options.method == RegistrationMethod::kSubdivision) judge_seams(cad, result);
   if (options.method == RegistrationMethod::kProjection) judge_projection(cad, options.projection, result);

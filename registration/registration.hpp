@@ -59,6 +59,7 @@ struct Registration {
   double face_strain_ratio = 0.0;   ///< the same on the scanned face, which bending alone lengthens
   double strain_limit_ratio = 0.0;  ///< what the edge limit makes of it: the scan shows no smaller strain
   double density_per_mm2 = 0.0;
+  double seen_ratio = 0.0;  ///< share of the contours' length where scan points decided
   [[nodiscard]] bool usable() const { return field != nullptr; }
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/geometry/median.hpp"
 #include "acquisition/geometry/parallel_for.hpp"
 #include "acquisition/geometry/rigid_fit.hpp"
 #include "acquisition/types/error.hpp"
@@ -19,13 +20,6 @@ constexpr double kAnneal = 0.7;                   // robust scale of the next ro
 constexpr double kDamping = 1e-4;                 // of the largest eigenvalue
 constexpr double kFreeEigenvalueRatio = 1e-4;     // of the largest: a direction that the data leave free
 constexpr std::size_t kChunk = 256;
-
-double median_of(std::vector<double>& values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Scan points that can belong to the band around the contours at the start pose, thinned to a fixed count.
 std::vector<std::size_t> band_sample(const CadModel& cad, const ScanModel& scan,
@@ -149,7 +143,7 @@ class PointToPlane {
       sizes.push_back(std::sqrt(size2));
       ++round.pairs;
     }
-    floor_mm_ = std::max(2.0 * scan_.spacing_mm, 3.0 * 1.4826 * median_of(sizes));
+    floor_mm_ = std::max(2.0 * scan_.spacing_mm, 3.0 * 1.4826 * median_of(std::move(sizes)));
     return round;
   }
 

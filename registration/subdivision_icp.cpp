@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/geometry/median.hpp"
 #include "acquisition/geometry/parallel_for.hpp"
 #include "acquisition/geometry/rigid_fit.hpp"
 #include "acquisition/types/error.hpp"
@@ -81,10 +82,7 @@ class FootFit {
       const EdgePair pair = pair_edge(cad_, cad_from_scan * e, kFarthestStartMm);
       if (pair.contour == contour_) sizes.push_back(std::hypot(pair.across_mm, pair.normal_mm));
     }
-    if (sizes.empty()) return 1.0;
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    return 3.0 * *middle;
+    return sizes.empty() ? 1.0 : 3.0 * median_of(std::move(sizes));
   }
 
   double across_scale_mm() const {

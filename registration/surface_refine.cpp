@@ -196,15 +196,6 @@ class SurfaceFitter {
     const Eigen::Index n = system.gradient.size();
     fit_.covariance =
         Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>(system.information).solve(Eigen::MatrixXd::Identity(n, n));
-    for (const SheetCell& cell : sheet_)
-      fit_.mean_strain_ratio += largest_strain(cell.mid_strain(fit_.shift_mm, prior_.thickness_mm)) /
-                                static_cast<double>(sheet_.size());
-  }
-
-  static double largest_strain(const Eigen::Vector3d& strain) {
-    const double middle = 0.5 * (strain[0] + strain[2]);
-    const double radius = std::hypot(0.5 * (strain[0] - strain[2]), strain[1]);
-    return std::max(std::abs(middle - radius), std::abs(middle + radius));
   }
 
   const CadModel& cad_;
