@@ -20,6 +20,11 @@ constexpr int kRounds = 30;
 constexpr double kLeastExpectedRatio = 0.5;  // of the scan's median density, beside the contour
 constexpr double kEdgeLimitLengthMm = 50.0;  // an edge is known up to a smooth shift over about this length
 constexpr double kGapBendPerMm = 5e-4;       // how much a part may bend between the two sides of a gap
+constexpr double kNearRatio = 0.5;           // of the strip: how near to the fitted edge there must be points
+constexpr double kChanceMargin =
+    5.0;  // the longest of n random gaps exceeds log n + 5 means once in 150 times
+constexpr std::size_t kFewestForGap = 8;  // points of a stretch that rows are looked for in
+constexpr int kSeenPasses = 6;            // of finding the bins that show the edge, and the edge in them
 constexpr std::size_t kChunk = 512;
 
 /// A scan point in the contour's own coordinates, CAD frame.
@@ -112,6 +117,7 @@ class EdgeFitter {
              {},
              0.0,
              {},
+             {},
              0.0,
              0.0,
              0} {
@@ -122,8 +128,17 @@ class EdgeFitter {
   EdgeFit run() {
     collect();
     fit_height();
-    find_seen_bins();
-    fit_across();
+    fit_.across = Eigen::VectorXd::Zero(fit_.spline.size());
+    // Which bins show an edge depends on where it is, and the other way round: an edge that bending moved
+    // into the material looks like a gap from where it was. From the bins that show it the fit grows along
+    // it.
+    for (int pass = 0; pass < kSeenPasses; ++pass) {
+      const std::vector<char> before = fit_.seen;
+      find_seen_bins(pass == 0 ? 1.0 : kNearRatio);
+      if (fit_.seen == before) break;
+      fit_across();
+    }
+    find_row_gaps();
     return std::move(fit_);
   }
 
@@ -224,11 +239,15 @@ class EdgeFitter {
     }
   }
 
-  /// Bins of the contour in which the scan shows material right up to the edge.
-  void find_seen_bins() {
+  double inside_of_edge_mm(const StripPoint& p) const { return p.across_mm - p.row.dot(fit_.across); }
+
+  /// Bins of the contour in which the scan shows material right up to the edge as fitted so far.
+  void find_seen_bins(double near_ratio) {
     double inliers = 0.0;
-    for (const StripPoint& p : points_)
-      if (p.inlier && p.across_mm > -scan_.spacing_mm && p.across_mm < strip_mm_) inliers += p.curve_weight;
+    for (const StripPoint& p : points_) {
+      const double inside_mm = inside_of_edge_mm(p);
+      if (p.inlier && inside_mm > -scan_.spacing_mm && inside_mm < strip_mm_) inliers += p.curve_weight;
+    }
     // Where most of the contour is missing the scan's own spacing still says what to expect.
     const double expected_per_mm =
         kLeastExpectedRatio * strip_mm_ / std::max(1e-9, scan_.spacing_mm * scan_.spacing_mm);
@@ -238,14 +257,15 @@ class EdgeFitter {
     fit_.bin_mm = curve_.length_mm() / static_cast<double>(bins);
     std::vector<double> all(bins, 0.0), near(bins, 0.0);
     for (const StripPoint& p : points_) {
-      if (!p.inlier || p.across_mm > strip_mm_) continue;
+      const double inside_mm = inside_of_edge_mm(p);
+      if (!p.inlier || inside_mm > strip_mm_) continue;
       const std::size_t b = std::min(bins - 1, static_cast<std::size_t>(p.arc_mm / fit_.bin_mm));
       all[b] += p.curve_weight;
-      if (p.across_mm < 0.5 * strip_mm_) near[b] += p.curve_weight;
+      if (inside_mm < near_ratio * strip_mm_) near[b] += p.curve_weight;
     }
     const double expected = expected_per_mm * fit_.bin_mm;
     const double usual = std::max(median_of(all), expected);
-    const double usual_near = std::max(median_of(near), 0.5 * expected);
+    const double usual_near = std::max(median_of(near), near_ratio * expected);
     fit_.seen.assign(bins, 1);
     for (std::size_t b = 0; b < bins; ++b)
       if (near[b] < 0.2 * usual_near || all[b] < 0.2 * usual) fit_.seen[b] = 0;
@@ -255,6 +275,43 @@ class EdgeFitter {
       if (beside_gap && near[b] < 0.6 * usual_near) fit_.seen[b] = 0;
     }
     fit_.density_per_mm2 = usual / (fit_.bin_mm * strip_mm_);
+  }
+
+  /// Bins where rows of points run along the edge: it may be anywhere from the last row to where the next
+  /// would be. Counted from the fitted edge inward, the points of a stretch then leave a gap that chance does
+  /// not leave.
+  void find_row_gaps() {
+    const std::size_t bins = fit_.seen.size();
+    std::vector<std::vector<double>> inside_mm(bins);
+    for (const StripPoint& p : points_)
+      if (p.inlier && fit_.seen_at(p.arc_mm))
+        inside_mm[std::min(bins - 1, static_cast<std::size_t>(p.arc_mm / fit_.bin_mm))].push_back(
+            inside_of_edge_mm(p));
+    const auto reach = static_cast<int>(0.5 * kEdgeLimitLengthMm / fit_.bin_mm);
+    fit_.row_gap_mm.assign(bins, 0.0);
+    for (std::size_t b = 0; b < bins; ++b) {
+      std::vector<double> window_mm;
+      for (int k = -reach; k <= reach; ++k) {
+        const int at = static_cast<int>(b) + k, count = static_cast<int>(bins);
+        if (!curve_.closed() && (at < 0 || at >= count)) continue;
+        const std::vector<double>& add = inside_mm[static_cast<std::size_t>((at + count) % count)];
+        window_mm.insert(window_mm.end(), add.begin(), add.end());
+      }
+      fit_.row_gap_mm[b] = unlikely_gap_mm(std::move(window_mm));
+    }
+  }
+
+  /// The longest gap that begins in the strip (a stray beyond the edge begins none), if points in random
+  /// places would hardly leave it; else 0.
+  [[nodiscard]] double unlikely_gap_mm(std::vector<double> inside_mm) const {
+    if (inside_mm.size() < kFewestForGap) return 0.0;
+    std::sort(inside_mm.begin(), inside_mm.end());
+    const double count = static_cast<double>(inside_mm.size());
+    const double mean_gap_mm = normal_strip_mm_ / count;
+    double gap_mm = 0.0;
+    for (std::size_t i = 1; i < inside_mm.size() && inside_mm[i - 1] < strip_mm_; ++i)
+      if (inside_mm[i - 1] > -2.0 * mean_gap_mm) gap_mm = std::max(gap_mm, inside_mm[i] - inside_mm[i - 1]);
+    return gap_mm > (std::log(count) + kChanceMargin) * mean_gap_mm ? gap_mm : 0.0;
   }
 
   /// Newton on the one-sided potential, tau shrinking from kStartTauMm to 1 / (density * knot).
@@ -285,7 +342,7 @@ class EdgeFitter {
     curvature = prior;
     Eigen::VectorXd gradient = prior * fit_.across;
     for (const StripPoint* p : active) {
-      const double g = p->across_mm - p->row.dot(fit_.across);
+      const double g = inside_of_edge_mm(*p);
       if (g > strip_mm_) continue;
       const double x = g / tau - kBalance;
       const double inside = sigmoid(x);
@@ -332,6 +389,12 @@ bool EdgeFit::seen_at(double arc_mm) const {
   return seen[std::min(seen.size() - 1, static_cast<std::size_t>(std::max(0.0, bin)))] != 0;
 }
 
+double EdgeFit::row_gap_at_mm(double arc_mm) const {
+  if (row_gap_mm.empty()) return 0.0;
+  const double bin = std::max(0.0, arc_mm / bin_mm);
+  return row_gap_mm[std::min(row_gap_mm.size() - 1, static_cast<std::size_t>(bin))];
+}
+
 double EdgeFit::to_seen_mm(double arc_mm, bool closed) const {
   if (seen.empty() || seen_at(arc_mm)) return 0.0;
   const double length_mm = bin_mm * static_cast<double>(seen.size());
@@ -354,7 +417,7 @@ double EdgeFit::edge_limit_mm() const {
 
 double EdgeFit::sd_across_mm(double arc_mm, bool closed) const {
   const double gap_mm = unseen_bend_mm(to_seen_mm(arc_mm, closed));
-  const double limit_mm = edge_limit_mm();
+  const double limit_mm = std::max(edge_limit_mm(), row_gap_at_mm(arc_mm) / std::sqrt(12.0));
   return std::sqrt(variance_at(spline.at(arc_mm), across_covariance) + limit_mm * limit_mm + gap_mm * gap_mm);
 }
 

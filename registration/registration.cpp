@@ -12,6 +12,7 @@ namespace {
 constexpr double kSharpenedSigmaRatio = 0.1;  // scatter of the edge by support, in spacings
 constexpr int kSharpeningPasses = 2;
 constexpr double kRigidStartLooseness = 8.0;
+constexpr int kRigidPasses = 1;  // of the rigid ICP on the edge by support
 constexpr double kSampleMm = 2.0;
 constexpr double kSeamMm = 2.5,
                  kSeamEdgeLimits = 3.0;  // how far segments may disagree: bending, and the edge limit
@@ -129,19 +130,32 @@ double stretch(const CadModel& cad, const std::vector<ContourResult>& contours) 
   return nominal_mm > 0.0 ? carried_mm / nominal_mm - 1.0 : 0.0;
 }
 
-/// Longest run of bins without data, as arc lengths; wraps on a closed contour.
+/// What two segments may disagree by at their cut, and an edge may lie off the middle between two rows along
+/// it.
+double seam_limit_mm(const EdgeFit& edge) {
+  const double edge_limit_mm = 1.0 / (50.0 * std::max(edge.density_per_mm2, 1e-9));
+  return kSeamMm + kSeamEdgeLimits * edge_limit_mm;
+}
+
+/// Longest run of bins that show no edge, or one that may lie anywhere between two rows of points; as arc
+/// lengths; wraps on a closed contour.
 struct Unseen {
-  double from_mm = 0.0, length_mm = 0.0;
+  double from_mm = 0.0, length_mm = 0.0, row_gap_mm = 0.0;
 };
 Unseen longest_unseen(const EdgeFit& edge, bool closed) {
   Unseen longest;
   const std::size_t n = edge.seen.size();
+  const double rows_limit_mm = 2.0 * seam_limit_mm(edge);
+  const auto shown = [&](std::size_t bin) { return edge.seen[bin] && edge.row_gap_mm[bin] < rows_limit_mm; };
   for (std::size_t start = 0; start < n; ++start) {
-    if (edge.seen[start] || (start > 0 && !edge.seen[start - 1])) continue;
+    if (shown(start) || (start > 0 && !shown(start - 1))) continue;
     std::size_t run = 0;
-    while (run < n && (closed || start + run < n) && !edge.seen[(start + run) % n]) ++run;
+    double row_gap_mm = 0.0;
+    while (run < n && (closed || start + run < n) && !shown((start + run) % n))
+      row_gap_mm = std::max(row_gap_mm, edge.row_gap_mm[(start + run++) % n]);
     if (static_cast<double>(run) * edge.bin_mm > longest.length_mm)
-      longest = {static_cast<double>(start) * edge.bin_mm, static_cast<double>(run) * edge.bin_mm};
+      longest = {static_cast<double>(start) * edge.bin_mm, static_cast<double>(run) * edge.bin_mm,
+                 row_gap_mm < rows_limit_mm ? 0.0 : row_gap_mm};
   }
   return longest;
 }
@@ -151,8 +165,7 @@ void judge_seams(const CadModel& cad, Registration& result) {
   for (std::size_t c = 0; c < result.contours.size(); ++c) {
     const ContourMotion& motion = result.contours[c].motion;
     const std::vector<Segment>& segments = motion.subdivision().segments();
-    const double edge_limit_mm = 1.0 / (50.0 * std::max(result.contours[c].edge.density_per_mm2, 1e-9));
-    const double limit_mm = kSeamMm + kSeamEdgeLimits * edge_limit_mm;
+    const double limit_mm = seam_limit_mm(result.contours[c].edge);
     for (std::size_t z = 0; z < segments.size(); ++z) {
       const std::size_t next = (z + 1) % segments.size();
       if (next == z || (next == 0 && !cad.contours[c].closed())) continue;
@@ -187,6 +200,16 @@ void judge_residuals(const CadModel& cad, const ScanModel& scan, Registration& r
   }
 }
 
+std::string rows_along_edge(double row_gap_mm) {
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      ": rows of points %.1f mm apart run along it, and it lies anywhere between two; scan it with rows "
+      "across the edge",
+      row_gap_mm);
+  return text;
+}
+
 void judge_coverage(const CadModel& cad, const RegistrationOptions& options, Registration& result) {
   for (std::size_t c = 0; c < result.contours.size(); ++c) {
     const EdgeFit& edge = result.contours[c].edge;
@@ -206,12 +229,34 @@ void judge_coverage(const CadModel& cad, const RegistrationOptions& options, Reg
   }
 }
 
-void deform(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options,
-            Registration& result) {
-  const RigidMotion& rigid = result.rigid.scan_from_cad;
+/// The edge by support relative to one rigid motion.
+std::vector<ContourResult> edges_from_rigid(const CadModel& cad, const ScanModel& scan,
+                                            const RigidMotion& rigid, const EdgeFitOptions& options) {
   std::vector<ContourMotion> motions;
   for (const Curve& curve : cad.contours) motions.push_back(rigid_motion(curve, rigid));
-  result.contours = with_edges(cad, scan, std::move(motions), for_rigid_start(options.edge));
+  return with_edges(cad, scan, std::move(motions), for_rigid_start(options));
+}
+
+/// Rigid ICP once more, on the edge by support. Extracted edge points end up to a spacing inside the
+/// material, of a scan in rows up to the distance of the rows, and not alike all around: such a pose slides
+/// along an oval.
+void refine_rigid(const CadModel& cad, ScanModel& scan, const RegistrationOptions& options,
+                  Registration& result) {
+  std::vector<Eigen::Vector3d> extracted =
+      std::exchange(scan.edge_mm, sharpened(cad, scan, result.contours).points_mm);
+  RigidIcpOptions icp = options.rigid;
+  icp.start_scale_mm = 4.0 * scan.spacing_mm;
+  RigidIcpResult refined = icp_point_to_plane(cad, scan, result.rigid.scan_from_cad, icp);
+  scan.edge_mm = std::move(extracted);
+  if (!refined.usable()) return;
+  result.rigid = std::move(refined);
+  result.contours = edges_from_rigid(cad, scan, result.rigid.scan_from_cad, options.edge);
+}
+
+void deform(const CadModel& cad, ScanModel& scan, const RegistrationOptions& options, Registration& result) {
+  result.contours = edges_from_rigid(cad, scan, result.rigid.scan_from_cad, options.edge);
+  for (int pass = 0; pass < kRigidPasses; ++pass) refine_rigid(cad, scan, options, result);
+  const RigidMotion& rigid = result.rigid.scan_from_cad;
   if (options.method == RegistrationMethod::kRigid) {
     result.field = std::make_shared<RigidField>(rigid);
     return;
@@ -246,10 +291,10 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
     result.refusals.push_back(result.rigid.reason);
     return result;
   }
+  deform(cad, scan, options, result);
   double size_mm = 1.0;
   for (const Curve& curve : cad.contours) size_mm = std::max(size_mm, curve.length_mm() / 6.28);
   result.free_directions = free_directions(result.rigid.information, result.rigid.pivot_mm, size_mm);
-  deform(cad, scan, options, result);
   const RigidMotion& pose = result.rigid.scan_from_cad;
   result.stage_residual_mm.emplace_back(
       "rigid", edge_rms(cad, result.contours,
