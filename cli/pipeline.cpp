@@ -88,6 +88,11 @@ void describe_alignment(const Registration& found, const Measurement& measuremen
   if (alignment.side_decided_by.empty())
     alignment.side_decided_by = found.coarse.start == "initial pose" ? "initial pose" : "shape";
   alignment.free_directions = found.free_directions;
+  if (found.usable() && !found.rigid.covariance.isZero()) {
+    const double* first = found.rigid.covariance.data();  // symmetric: columns are rows
+    alignment.covariance_6x6.assign(first, first + 36);
+    alignment.covariance_about_mm = found.rigid.pivot_mm;
+  }
   double seen = 0.0, length = 0.0;
   for (const ContourResult& contour : found.contours) {
     seen += contour.edge.seen_ratio() * contour.motion.nominal().length_mm();

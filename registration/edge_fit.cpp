@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "acquisition/geometry/parallel_for.hpp"
 
@@ -66,10 +67,10 @@ class CarriedCurve {
   CarriedCurve(const Curve& nominal, const ContourMotion& motion)
       : nominal_(nominal), curve_(carry(nominal, motion)) {}
 
-  /// Nominal arc length of the foot of a scan point.
-  double arc_of(const Eigen::Vector3d& p_scan_mm, double& distance_mm) const {
-    const CurveFoot foot = curve_.nearest(p_scan_mm);
-    distance_mm = foot.distance_mm;
+  /// Nominal arc length of the foot of a scan point; none beyond reach_mm.
+  std::optional<double> arc_of(const Eigen::Vector3d& p_scan_mm, double reach_mm) const {
+    const CurveFoot foot = curve_.nearest_within(p_scan_mm, reach_mm);
+    if (foot.segment < 0) return std::nullopt;
     const double begin = nominal_.arc_of_point_mm(foot.segment);
     const double end = nominal_.arc_of_point_mm(foot.segment + 1);  // the total length after the last chord
     return begin + foot.ratio * (end - begin);
@@ -151,9 +152,10 @@ class EdgeFitter {
       for (std::size_t i = begin; i < end; ++i) {
         StripPoint& p = all[i];
         p.inlier = false;
-        double distance_mm = 0.0;
-        p.arc_mm = carried.arc_of(scan_.points_mm[i], distance_mm);
-        if (distance_mm > normal_strip_mm_ + outside_mm) continue;
+        const std::optional<double> arc_mm =
+            carried.arc_of(scan_.points_mm[i], normal_strip_mm_ + outside_mm);
+        if (!arc_mm) continue;
+        p.arc_mm = *arc_mm;
         place(i, p);
         p.inlier = p.across_mm > -outside_mm && p.across_mm < normal_strip_mm_ &&
                    std::abs(p.height_mm) < 3.0 * scan_.spacing_mm + 3.0;

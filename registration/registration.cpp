@@ -12,7 +12,8 @@ namespace {
 constexpr double kSharpenedSigmaRatio = 0.1;  // scatter of the edge by support, in spacings
 constexpr int kSharpeningPasses = 2;
 constexpr double kRigidStartLooseness = 8.0;
-constexpr int kRigidPasses = 1;  // of the rigid ICP on the edge by support
+constexpr int kRigidPasses = 1;           // of the rigid ICP on the edge by support
+constexpr int kRigidSurfacePoints = 500;  // the surface counts as 100 points, however many there are
 constexpr double kSampleMm = 2.0;
 constexpr double kSeamMm = 2.5,
                  kSeamEdgeLimits = 3.0;  // how far segments may disagree: bending, and the edge limit
@@ -237,6 +238,31 @@ std::vector<ContourResult> edges_from_rigid(const CadModel& cad, const ScanModel
   return with_edges(cad, scan, std::move(motions), for_rigid_start(options));
 }
 
+/// What the edge fit itself does not know of the edge across, smooth along it, moves the pose as a whole: the
+/// misfit that is left does not show it. Pose = inverse * sum(rows) * coefficients, so their covariance
+/// carries over.
+void add_edge_covariance(const CadModel& cad, const std::vector<ContourResult>& contours,
+                         RigidIcpResult& rigid) {
+  double reach_mm = 1.0;
+  for (const Curve& curve : cad.contours) reach_mm = std::max(reach_mm, curve.length_mm() / 6.28);
+  const Eigen::Matrix<double, 6, 6> inverse = determined(rigid.information, reach_mm).inverse;
+  for (std::size_t c = 0; c < contours.size(); ++c) {
+    const EdgeFit& edge = contours[c].edge;
+    Eigen::Matrix<double, 6, Eigen::Dynamic> pull =
+        Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, edge.spline.size());
+    along(cad.contours[c], [&](double s_mm) {
+      if (!edge.seen_at(s_mm)) return;
+      const Eigen::Vector3d across = cad.inward(c, s_mm);
+      Eigen::Matrix<double, 6, 1> row;
+      row << (cad.contours[c].point_mm(s_mm) - rigid.pivot_mm).cross(across), across;
+      const SplineRow at = edge.spline.at(s_mm);
+      for (std::size_t k = 0; k < 4; ++k) pull.col(at.index[k]) += at.value[k] * row;
+    });
+    const Eigen::Matrix<double, 6, Eigen::Dynamic> gain = inverse * pull;
+    rigid.covariance += gain * edge.across_covariance * gain.transpose();
+  }
+}
+
 /// Rigid ICP once more, on the edge by support. Extracted edge points end up to a spacing inside the
 /// material, of a scan in rows up to the distance of the rows, and not alike all around: such a pose slides
 /// along an oval.
@@ -246,9 +272,12 @@ void refine_rigid(const CadModel& cad, ScanModel& scan, const RegistrationOption
       std::exchange(scan.edge_mm, sharpened(cad, scan, result.contours).points_mm);
   RigidIcpOptions icp = options.rigid;
   icp.start_scale_mm = 4.0 * scan.spacing_mm;
+  icp.surface_points = std::min(icp.surface_points, kRigidSurfacePoints);
+  icp.with_covariance = true;
   RigidIcpResult refined = icp_point_to_plane(cad, scan, result.rigid.scan_from_cad, icp);
   scan.edge_mm = std::move(extracted);
   if (!refined.usable()) return;
+  add_edge_covariance(cad, result.contours, refined);
   result.rigid = std::move(refined);
   result.contours = edges_from_rigid(cad, scan, result.rigid.scan_from_cad, options.edge);
 }
@@ -286,6 +315,7 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   drop_other_loops(cad, scan, result.coarse.scan_from_cad, options.coarse.band_mm, result.loops);
   RigidIcpOptions rigid = options.rigid;
   rigid.start_scale_mm = std::max(3.0 * result.coarse.score_mm, 4.0 * scan.spacing_mm);
+  rigid.surface_points = std::min(rigid.surface_points, kRigidSurfacePoints);
   result.rigid = icp_point_to_plane(cad, scan, result.coarse.scan_from_cad, rigid);
   if (!result.rigid.usable()) {
     result.refusals.push_back(result.rigid.reason);

@@ -32,8 +32,10 @@ class SurfaceQuery {
   SurfaceQuery(SurfaceQuery&&) noexcept;
   SurfaceQuery& operator=(SurfaceQuery&&) noexcept;
 
-  /// Nearest point within max_distance_mm (triangle -1 if there is none).
-  [[nodiscard]] SurfacePoint closest(const Eigen::Vector3d& query_mm, double max_distance_mm = 1e30) const;
+  /// Nearest point within max_distance_mm (triangle -1 if there is none). `hint`: an earlier answer that is
+  /// likely near, of a point that has moved a little; it makes the search quicker and changes nothing.
+  [[nodiscard]] SurfacePoint closest(const Eigen::Vector3d& query_mm, double max_distance_mm = 1e30,
+                                     std::int32_t hint = -1) const;
 
  private:
   struct Impl;
