@@ -97,6 +97,11 @@ void describe_alignment(const Registration& found, const Measurement& measuremen
     alignment.side_decided_by = found.coarse.start == "initial pose" ? "initial pose" : "shape";
   alignment.free_directions = found.free_directions;
   alignment.overlap_ratio = found.seen_ratio;
+  if (found.usable() && !found.rigid.covariance.isZero()) {
+    const double* first = found.rigid.covariance.data();  // symmetric: columns are rows
+    alignment.covariance_6x6.assign(first, first + 36);
+    alignment.covariance_about_mm = found.rigid.pivot_mm;
+  }
 }
 
 void describe_segments(const CadModel& cad, const Registration& found, RunRecord& record) {

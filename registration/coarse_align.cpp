@@ -375,9 +375,11 @@ CoarseAlignment coarse_align(const CadModel& cad, const ScanModel& scan, const C
       result.reason = ambiguity(best, other, result.runner_up_ratio);
     break;
   }
+  // A bent part that is nearly its own mirror image fits either way: only said, not called mirrored.
   if (!result.usable() && !side_open && result.mirror_ratio > 0.0 &&
       result.mirror_ratio < kMirrorOfAmbiguousRatio)
-    return call_mirrored();
+    result.reason += "; the scan's mirror image fits better (" + percent(result.mirror_ratio) +
+                     " of the best): was it exported mirrored?";
   if (result.usable() && best.score_mm > 0.8 * search.cap_mm())
     result.reason = "no pose fits: the best start leaves " + millimetres(best.score_mm) + " mm";
   if (!result.usable()) result.unit_ratio = unit_that_fits(cad, scan);

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "acquisition/geometry/median.hpp"
 #include "acquisition/geometry/parallel_for.hpp"
@@ -21,6 +22,11 @@ constexpr double kGateSigmas = 4.0;   // height residual of a point that takes p
 constexpr int kRounds = 30;
 constexpr double kEdgeLimitLengthMm = 50.0;  // an edge is known up to a smooth shift over about this length
 constexpr double kGapBendPerMm = 5e-4;       // how much a part may bend between the two sides of a gap
+constexpr double kNearRatio = 0.5;           // of the strip: how near to the fitted edge there must be points
+constexpr double kChanceMargin =
+    5.0;  // the longest of n random gaps exceeds log n + 5 means once in 150 times
+constexpr std::size_t kFewestForGap = 8;  // points of a stretch that rows are looked for in
+constexpr int kSeenPasses = 6;            // of finding the bins that show the edge, and the edge in them
 constexpr std::size_t kChunk = 512;
 
 /// A scan point in the contour's own coordinates, CAD frame.
@@ -55,18 +61,7 @@ class EdgeFitter {
         scan_(scan),
         motion_(motion),
         options_(options),
-        fit_{ArcSpline(curve_.length_mm(), curve_.closed(), options.knot_mm),
-             {},
-             {},
-             {},
-             {},
-             {},
-             {},
-             0.0,
-             {},
-             0.0,
-             0.0,
-             0} {
+        fit_(ArcSpline(curve_.length_mm(), curve_.closed(), options.knot_mm)) {
     strip_mm_ = std::clamp(4.0 * scan.spacing_mm, 3.0, options.strip_mm);
     normal_strip_mm_ = std::clamp(6.0 * scan.spacing_mm, strip_mm_, options.normal_strip_mm);
   }
@@ -74,8 +69,16 @@ class EdgeFitter {
   EdgeFit run() {
     collect();
     fit_height();
-    find_seen();
-    fit_across();
+    // Which bins show an edge depends on where it is, and the other way round: an edge that bending moved
+    // into the material looks like a gap from where it was. From the bins that show it the fit grows along
+    // it.
+    for (int pass = 0; pass < kSeenPasses; ++pass) {
+      const std::vector<char> before = fit_.seen;
+      find_seen(pass == 0 ? strip_mm_ : kNearRatio * strip_mm_);
+      if (fit_.seen == before) break;
+      fit_across();
+    }
+    find_row_gaps();
     return std::move(fit_);
   }
 
@@ -88,9 +91,10 @@ class EdgeFitter {
       for (std::size_t i = begin; i < end; ++i) {
         StripPoint& p = all[i];
         p.inlier = false;
-        double distance_mm = 0.0;
-        p.arc_mm = carried.arc_of(scan_.points_mm[i], distance_mm);
-        if (distance_mm > normal_strip_mm_ + outside_mm) continue;
+        const std::optional<double> arc_mm =
+            carried.arc_within(scan_.points_mm[i], normal_strip_mm_ + outside_mm);
+        if (!arc_mm) continue;
+        p.arc_mm = *arc_mm;
         place(i, p);
         p.inlier = p.across_mm > -outside_mm && p.across_mm < normal_strip_mm_ &&
                    std::abs(p.height_mm) < 3.0 * scan_.spacing_mm + 3.0;
@@ -174,18 +178,60 @@ class EdgeFitter {
     }
   }
 
-  /// Bins of the contour in which the scan shows material right up to the edge.
-  void find_seen() {
-    double inliers = 0.0;
-    for (const StripPoint& p : points_)
-      if (p.inlier && p.across_mm > -scan_.spacing_mm && p.across_mm < strip_mm_) inliers += p.curve_weight;
+  double inside_of_edge_mm(const StripPoint& p) const { return p.across_mm - p.row.dot(fit_.across); }
+
+  /// Bins of the contour in which the scan shows material right up to the edge as fitted so far.
+  void find_seen(double near_mm) {
     std::vector<BesidePoint> beside;
-    for (const StripPoint& p : points_)
-      if (p.inlier && p.across_mm <= strip_mm_) beside.push_back({p.arc_mm, p.across_mm, p.curve_weight});
-    SeenBins found = find_seen_bins(beside, inliers, curve_.length_mm(), strip_mm_, scan_.spacing_mm);
+    double weight = 0.0;
+    for (const StripPoint& p : points_) {
+      const double inside_mm = inside_of_edge_mm(p);
+      if (!p.inlier || inside_mm > strip_mm_) continue;
+      beside.push_back({p.arc_mm, inside_mm, p.curve_weight});
+      if (inside_mm > -scan_.spacing_mm) weight += p.curve_weight;
+    }
+    SeenBins found =
+        find_seen_bins(beside, weight, {curve_.length_mm(), strip_mm_, near_mm, scan_.spacing_mm});
     fit_.bin_mm = found.bin_mm;
     fit_.seen = std::move(found.seen);
     fit_.density_per_mm2 = found.density_per_mm2;
+  }
+
+  /// Bins where rows of points run along the edge: it may be anywhere from the last row to where the next
+  /// would be. Counted from the fitted edge inward, the points of a stretch then leave a gap that chance does
+  /// not leave.
+  void find_row_gaps() {
+    const std::size_t bins = fit_.seen.size();
+    std::vector<std::vector<double>> inside_mm(bins);
+    for (const StripPoint& p : points_)
+      if (p.inlier && fit_.seen_at(p.arc_mm))
+        inside_mm[std::min(bins - 1, static_cast<std::size_t>(p.arc_mm / fit_.bin_mm))].push_back(
+            inside_of_edge_mm(p));
+    const auto reach = static_cast<int>(0.5 * kEdgeLimitLengthMm / fit_.bin_mm);
+    fit_.row_gap_mm.assign(bins, 0.0);
+    for (std::size_t b = 0; b < bins; ++b) {
+      std::vector<double> window_mm;
+      for (int k = -reach; k <= reach; ++k) {
+        const int at = static_cast<int>(b) + k, count = static_cast<int>(bins);
+        if (!curve_.closed() && (at < 0 || at >= count)) continue;
+        const std::vector<double>& add = inside_mm[static_cast<std::size_t>((at + count) % count)];
+        window_mm.insert(window_mm.end(), add.begin(), add.end());
+      }
+      fit_.row_gap_mm[b] = unlikely_gap_mm(std::move(window_mm));
+    }
+  }
+
+  /// The longest gap that begins in the strip (a stray beyond the edge begins none), if points in random
+  /// places would hardly leave it; else 0.
+  [[nodiscard]] double unlikely_gap_mm(std::vector<double> inside_mm) const {
+    if (inside_mm.size() < kFewestForGap) return 0.0;
+    std::sort(inside_mm.begin(), inside_mm.end());
+    const double count = static_cast<double>(inside_mm.size());
+    const double mean_gap_mm = normal_strip_mm_ / count;
+    double gap_mm = 0.0;
+    for (std::size_t i = 1; i < inside_mm.size() && inside_mm[i - 1] < strip_mm_; ++i)
+      if (inside_mm[i - 1] > -2.0 * mean_gap_mm) gap_mm = std::max(gap_mm, inside_mm[i] - inside_mm[i - 1]);
+    return gap_mm > (std::log(count) + kChanceMargin) * mean_gap_mm ? gap_mm : 0.0;
   }
 
   /// Newton on the one-sided potential, tau shrinking from kStartTauMm to 1 / (density * knot).
@@ -217,7 +263,7 @@ class EdgeFitter {
     Eigen::VectorXd gradient = prior * fit_.across;
     const EdgeSupport support{tau, strip_mm_, kStrayShare};
     for (const StripPoint* p : active) {
-      const EdgeSupport::Pull pull = support.at(p->across_mm - p->row.dot(fit_.across));
+      const EdgeSupport::Pull pull = support.at(inside_of_edge_mm(*p));
       const double slope = p->curve_weight * pull.slope_per_mm;
       const double bend = p->curve_weight * pull.curvature_per_mm2;
       for (std::size_t a = 0; a < 4; ++a) {
@@ -244,10 +290,22 @@ class EdgeFitter {
 
 }  // namespace
 
+EdgeFit::EdgeFit(ArcSpline along) : spline(std::move(along)) {
+  const int n = spline.size();
+  across = height = tilt = Eigen::VectorXd::Zero(n);
+  across_covariance = height_covariance = tilt_covariance = Eigen::MatrixXd::Zero(n, n);
+}
+
 bool EdgeFit::seen_at(double arc_mm) const {
   if (seen.empty()) return false;
   const double bin = arc_mm / bin_mm;
   return seen[std::min(seen.size() - 1, static_cast<std::size_t>(std::max(0.0, bin)))] != 0;
+}
+
+double EdgeFit::row_gap_at_mm(double arc_mm) const {
+  if (row_gap_mm.empty()) return 0.0;
+  const double bin = std::max(0.0, arc_mm / bin_mm);
+  return row_gap_mm[std::min(row_gap_mm.size() - 1, static_cast<std::size_t>(bin))];
 }
 
 double EdgeFit::to_seen_mm(double arc_mm, bool closed) const {
@@ -272,7 +330,7 @@ double EdgeFit::edge_limit_mm() const {
 
 double EdgeFit::sd_across_mm(double arc_mm, bool closed) const {
   const double gap_mm = unseen_bend_mm(to_seen_mm(arc_mm, closed));
-  const double limit_mm = edge_limit_mm();
+  const double limit_mm = std::max(edge_limit_mm(), row_gap_at_mm(arc_mm) / std::sqrt(12.0));
   return std::sqrt(variance_at(spline.at(arc_mm), across_covariance) + limit_mm * limit_mm + gap_mm * gap_mm);
 }
 

@@ -11,8 +11,8 @@ EdgePair pair_edge(const CadModel& cad, const Eigen::Vector3d& p_cad_mm, double 
   EdgePair pair;
   pair.foot.distance_mm = reach_mm;
   for (std::size_t c = 0; c < cad.contours.size(); ++c) {
-    const CurveFoot foot = cad.contours[c].nearest(p_cad_mm);
-    if (foot.distance_mm >= pair.foot.distance_mm) continue;
+    const CurveFoot foot = cad.contours[c].nearest_within(p_cad_mm, pair.foot.distance_mm);
+    if (foot.segment < 0) continue;
     pair.contour = static_cast<int>(c);
     pair.foot = foot;
   }

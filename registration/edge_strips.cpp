@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kStationMm = 2.0;
 constexpr double kTauFloorMm = 0.03;
+constexpr double kClaimTaus = 3.0;  // farther inside a point pulls nothing, farther outside it is let go
 constexpr std::size_t kChunk = 256;
 
 }  // namespace
@@ -37,6 +38,7 @@ void EdgeStrips::update(const std::vector<SurfacePair>& pairs, const std::vector
     for (std::size_t k = 0; k < edge.stations.size(); ++k) edge.inward.push_back(carried[e]->inward(k));
   }
   points_.assign(pairs.size(), {});
+  stray_.resize(pairs.size(), 0);
   parallel_for(pairs.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Point& point = points_[i];
@@ -63,7 +65,24 @@ void EdgeStrips::find_seen(std::size_t e) {
     beside.push_back({p.foot.arc_mm, p.foot.across_mm, p.weight});
     inliers += p.weight;
   }
-  edges_[e].bins = find_seen_bins(beside, inliers, edges_[e].curve->length_mm(), strip_mm_, spacing_mm_);
+  edges_[e].bins = find_seen_bins(beside, inliers,
+                                  {edges_[e].curve->length_mm(), strip_mm_, 0.5 * strip_mm_, spacing_mm_});
+}
+
+void EdgeStrips::set_row(const Point& point, SurfaceSystem::Row& row) const {
+  const Edge& edge = edges_[point.edge];
+  const BasisRow& basis = edge.stations[point.foot.station].row;
+  row.node = &basis.node;
+  row.offset = static_cast<int>(point.edge);
+  row.offset_derivative = -1.0;
+  row.direction.clear();
+  for (const BasisRow::Weights& w : basis.weight)
+    row.direction.push_back(-w[BasisRow::kValue] * edge.inward[point.foot.station]);
+}
+
+bool EdgeStrips::counts(std::size_t i) const {
+  const Point& p = points_[i];
+  return p.weight > 0.0 && edges_[p.edge].bins.seen[edges_[p.edge].bins.bin_of(p.foot.arc_mm)];
 }
 
 void EdgeStrips::add(std::size_t begin, std::size_t end, const std::vector<double>& offset_mm, double tau_mm,
@@ -72,20 +91,36 @@ void EdgeStrips::add(std::size_t begin, std::size_t end, const std::vector<doubl
   SurfaceSystem::Row row;
   for (std::size_t i = begin; i < end; ++i) {
     const Point& p = points_[i];
-    if (p.weight <= 0.0) continue;
-    const Edge& edge = edges_[p.edge];
-    if (!edge.bins.seen[edge.bins.bin_of(p.foot.arc_mm)]) continue;
-    const EdgeSupport::Pull pull = support.at(p.foot.across_mm - offset_mm[p.edge]);
+    if (!counts(i)) continue;
+    const double inside_mm = p.foot.across_mm - offset_mm[p.edge];
+    if (stray_[i]) continue;
+    const EdgeSupport::Pull pull = support.at(inside_mm);
     if (pull.slope_per_mm == 0.0 && pull.curvature_per_mm2 == 0.0) continue;
-    const BasisRow& basis = edge.stations[p.foot.station].row;
-    row.node = &basis.node;
-    row.offset = static_cast<int>(p.edge);
-    row.offset_derivative = -1.0;
-    row.direction.clear();
-    for (const BasisRow::Weights& w : basis.weight)
-      row.direction.push_back(-w[BasisRow::kValue] * edge.inward[p.foot.station]);
+    set_row(p, row);
     system.add(row, p.weight * pull.slope_per_mm, p.weight * pull.curvature_per_mm2);
   }
+}
+
+std::vector<EdgeClaim> EdgeStrips::claims(const std::vector<double>& offset_mm, double tau_mm,
+                                          double stray_ratio) const {
+  const EdgeSupport support{tau_mm, strip_mm_, stray_ratio};
+  std::vector<EdgeClaim> found;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Point& p = points_[i];
+    if (!counts(i) || stray_[i]) continue;
+    const double inside_mm = p.foot.across_mm - offset_mm[p.edge];
+    const EdgeSupport::Pull pull = support.at(inside_mm);
+    if (std::abs(inside_mm) > kClaimTaus * tau_mm || pull.slope_per_mm >= 0.0) continue;
+    EdgeClaim claim;
+    claim.pair = i;
+    claim.arc_mm = p.foot.arc_mm;
+    claim.slope = p.weight * pull.slope_per_mm;
+    claim.curvature = p.weight * pull.curvature_per_mm2;
+    claim.saved = p.weight * (support.cost(inside_mm) + std::log(stray_ratio));
+    set_row(p, claim.row);
+    found.push_back(std::move(claim));
+  }
+  return found;
 }
 
 double EdgeStrips::finest_tau_mm(double share_ratio) const {

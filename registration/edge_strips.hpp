@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "registration/carried_contour.hpp"
+#include "registration/edge_claims.hpp"
 #include "registration/seen_bins.hpp"
 #include "registration/surface_pairs.hpp"
 
@@ -32,6 +33,12 @@ class EdgeStrips {
   void add(std::size_t begin, std::size_t end, const std::vector<double>& offset_mm, double tau_mm,
            double stray_ratio, SurfaceSystem& system) const;
 
+  /// The points that pull their edge outward.
+  [[nodiscard]] std::vector<EdgeClaim> claims(const std::vector<double>& offset_mm, double tau_mm,
+                                              double stray_ratio) const;
+  /// From now on this pair pulls no edge outward.
+  void call_stray(std::size_t pair) { stray_[pair] = 1; }
+
   [[nodiscard]] std::size_t size() const { return edges_.size(); }
   [[nodiscard]] const std::vector<ContourStation>& stations(std::size_t edge) const {
     return edges_[edge].stations;
@@ -50,10 +57,13 @@ class EdgeStrips {
     SeenBins bins;
   };
   void find_seen(std::size_t e);
+  [[nodiscard]] bool counts(std::size_t point) const;
+  void set_row(const Point& point, SurfaceSystem::Row& row) const;
 
   std::vector<Edge> edges_;
   double strip_mm_, spacing_mm_;
   std::vector<Point> points_;
+  std::vector<char> stray_;  // one a pair
 };
 
 }  // namespace arris

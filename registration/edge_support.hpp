@@ -20,11 +20,18 @@ struct EdgeSupport {
   struct Pull {
     double slope_per_mm = 0.0, curvature_per_mm2 = 0.0;
   };
+  /// The cost without its constant pull; that of a stray is -log(stray_ratio).
+  [[nodiscard]] double cost(double inside_mm) const {
+    return -std::log(sigmoid(inside_mm / tau_mm - kBalance) + stray_ratio);
+  }
+  static double sigmoid(double x) {
+    return x >= 0.0 ? 1.0 / (1.0 + std::exp(-x)) : std::exp(x) / (1.0 + std::exp(x));
+  }
   [[nodiscard]] Pull at(double inside_mm) const {
     Pull pull;
     if (inside_mm > strip_mm) return pull;
     const double x = inside_mm / tau_mm - kBalance;
-    const double inside = x >= 0.0 ? 1.0 / (1.0 + std::exp(-x)) : std::exp(x) / (1.0 + std::exp(x));
+    const double inside = sigmoid(x);
     const double trusted = inside / (inside + stray_ratio);
     pull.slope_per_mm = -trusted * (1.0 - inside) / tau_mm + (inside_mm > 0.0 ? 1.0 / strip_mm : 0.0);
     const double bend = x < -1e-6 ? std::tanh(0.5 * x) / (2.0 * x) : inside * (1.0 - inside);

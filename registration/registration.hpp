@@ -63,11 +63,6 @@ struct Registration {
   [[nodiscard]] bool usable() const { return field != nullptr; }
 };
 
-/// The found edge of each contour relative to the nominal carried by its motion.
-[[nodiscard]] std::vector<ContourResult> with_edges(const CadModel& cad, const ScanModel& scan,
-                                                    std::vector<ContourMotion> motions,
-                                                    const EdgeFitOptions& options);
-
 /// All stages in order: start pose, rigid ICP, subdivision ICP on the scan's edge points, the edge by
 /// one-sided support, subdivision ICP again on that sharpened edge, and the edge once more. Angle-gap edge
 /// points lie half a spacing to a whole one inside the material, so the first subdivision only finds the

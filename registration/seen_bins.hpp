@@ -20,12 +20,19 @@ struct SeenBins {
   [[nodiscard]] std::size_t bin_of(double arc_mm) const;
 };
 
-/// Bins hold some 8 points each. One is not seen when it, or its half next to the edge, has less than a fifth
+/// The strip of material beside an edge.
+struct StripSize {
+  double length_mm = 0.0, width_mm = 0.0;
+  double near_mm = 0.0;     ///< the part of the width that must hold points for the edge to count as seen
+  double spacing_mm = 0.0;  ///< of the scan
+};
+
+/// Bins hold some 8 points each. One is not seen when it, or its part near the edge, has less than a fifth
 /// of the usual number; beside such a bin less than three fifths near the edge, for the rim of a gap cuts its
 /// neighbours too. Where most of the edge is missing the scan's own spacing says what is usual.
-///   points    of the strip, at most strip_mm inside
-///   inliers   their weight, for the size of the bins
-[[nodiscard]] SeenBins find_seen_bins(const std::vector<BesidePoint>& points, double inliers,
-                                      double length_mm, double strip_mm, double spacing_mm);
+///   points    at most width_mm inside
+///   weight    of those that make up the strip's density, for the size of the bins
+[[nodiscard]] SeenBins find_seen_bins(const std::vector<BesidePoint>& points, double weight,
+                                      const StripSize& strip);
 
 }  // namespace arris

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "registration/found_edge.hpp"
 #include "registration/surface_field.hpp"
 
 namespace arris {
@@ -18,22 +19,11 @@ constexpr std::size_t kUnseenBins = 8;
 
 /// Edge of a contour that is not there yet: seen nowhere.
 EdgeFit no_edge(const Curve& curve, const EdgeFitOptions& options) {
-  ArcSpline spline(curve.length_mm(), curve.closed(), options.knot_mm);
-  const Eigen::Index n = spline.size();
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
-  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(n, n);
-  return {spline,
-          zero,
-          zero,
-          zero,
-          none,
-          none,
-          none,
-          curve.length_mm() / kUnseenBins,
-          std::vector<char>(kUnseenBins, 0),
-          0.0,
-          0.0,
-          0};
+  EdgeFit none(ArcSpline(curve.length_mm(), curve.closed(), options.knot_mm));
+  none.bin_mm = curve.length_mm() / kUnseenBins;
+  none.seen.assign(kUnseenBins, 0);
+  none.row_gap_mm.assign(kUnseenBins, 0.0);
+  return none;
 }
 
 std::string text_of(const Eigen::Vector3d& direction) {
