@@ -24,10 +24,10 @@ struct ClaimVerdict {
 };
 
 /// One stray beside a thin stretch of points, or two, can hold an edge far out, for nothing near contradicts
-/// them, and the fit's own curvature calls them certain. With V = J H^-1 J' of some claims the rest of the fit
-/// gains s'V(1 - C V)^-1 s / 2 when they are let go, and moves by H^-1 J'(1 - C V)^-1 s. Where that is more
-/// than strays cost, they are strays; where it is nearly as much, the move is a doubt about the edge, by its
-/// odds. Each claim alone, and each two within near_mm along a contour.
+/// them, and the fit's own curvature calls them certain. With V = J H^-1 J' of some claims the rest of the
+/// fit gains s'V(1 - C V)^-1 s / 2 when they are let go, and moves by H^-1 J'(1 - C V)^-1 s. Where that is
+/// more than strays cost, they are strays; where it is nearly as much, the move is a doubt about the edge, by
+/// its odds. Each claim alone, and each two within near_mm along a contour.
 ///   inverse  H^-1 of the settled fit
 ///   cost     O(claims * unknowns * 75)
 [[nodiscard]] ClaimVerdict judge_claims(const SurfaceSystem& system, const Eigen::MatrixXd& inverse,

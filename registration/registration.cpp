@@ -148,7 +148,10 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   deform(cad, scan, options, result);
   if (!result.usable()) return result;
   measure_strain(cad, options, result);
-  if (cut) return result;
+  if (cut) {
+    result.density_per_mm2 = 1.0 / (scan.spacing_mm * scan.spacing_mm);
+    return result;
+  }
   const RigidMotion& pose = result.rigid.scan_from_cad;
   result.stage_residual_mm.emplace_back(
       "rigid", edge_rms_mm(cad, result.contours,

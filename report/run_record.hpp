@@ -145,7 +145,7 @@ struct RunRecord {
   ToolPath nominal_path;              ///< CAD frame
   Correction correction;              ///< scan frame local
   std::vector<std::string> refusals;  ///< all reasons of a refused run, correction.reasons included
-  double edge_limit_mm = 0.0;         ///< E = 1 / (density x 50 mm), across the contour
+  double edge_limit_mm = 0.0;         ///< E = 1 / (density x 50 mm), across the contour; NaN: role cut
   double surface_limit_mm = 0.0;      ///< sigma / sqrt(points within 10 mm)
 
   // The three results

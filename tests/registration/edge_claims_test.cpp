@@ -26,7 +26,9 @@ struct Quadratics {
       claim.pair = 10 + i;
       claim.arc_mm = 10.0 * static_cast<double>(i);
       claim.row.node = &nodes;
-      for (int k = 0; k < 3; ++k) claim.row.direction.push_back(Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+      for (int k = 0; k < 3; ++k)
+        claim.row.direction.push_back(
+            Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
       claim.row.offset = 0;
       claim.row.offset_derivative = -1.0;
       claim.slope = slopes[i];
@@ -43,7 +45,8 @@ struct Quadratics {
   }
 
   /// Where the rest has its minimum, and how much lower that is, when some claims are let go.
-  [[nodiscard]] std::pair<Eigen::VectorXd, double> solved_without(const std::vector<std::size_t>& gone) const {
+  [[nodiscard]] std::pair<Eigen::VectorXd, double> solved_without(
+      const std::vector<std::size_t>& gone) const {
     Eigen::MatrixXd information = full();
     Eigen::VectorXd pull = Eigen::VectorXd::Zero(information.rows());
     for (const std::size_t i : gone) {
@@ -66,8 +69,10 @@ TEST(EdgeClaims, AreStraysWhereTheRestGainsMoreThanStraysCost) {
     for (const double ratio : {0.999, 1.001}) {
       fit.claims[0].saved = -ratio * gain;
       const ClaimVerdict verdict = judge_claims(fit.all, inverse, fit.claims, 50.0);
-      if (ratio > 1.0) EXPECT_TRUE(verdict.strays.empty()) << seed;
-      else EXPECT_EQ(verdict.strays, std::vector<std::size_t>{10}) << seed;
+      if (ratio > 1.0)
+        EXPECT_TRUE(verdict.strays.empty()) << seed;
+      else
+        EXPECT_EQ(verdict.strays, std::vector<std::size_t>{10}) << seed;
     }
   }
 }
@@ -89,7 +94,8 @@ TEST(EdgeClaims, TwoThatHoldAnEdgeTogetherAreJudgedTogether) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Quadratics fit(seed, {-3.0, -3.0});
     for (int k = 0; k < 3; ++k)  // both at the same place
-      fit.claims[1].row.direction[static_cast<std::size_t>(k)] = fit.claims[0].row.direction[static_cast<std::size_t>(k)];
+      fit.claims[1].row.direction[static_cast<std::size_t>(k)] =
+          fit.claims[0].row.direction[static_cast<std::size_t>(k)];
     fit.all = SurfaceSystem(3, 1);
     fit.all.information.diagonal().array() += 3.0;
     for (EdgeClaim& claim : fit.claims) {
