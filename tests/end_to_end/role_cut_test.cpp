@@ -49,11 +49,13 @@ TEST(RoleCutRun, PathGoesWhereTheMaterialIsAndTheReportJudgesNoEdge) {
     p.true_mm = scan.scan_from_cad * p.true_mm;
     p.true_normal = scan.scan_from_cad.linear() * p.true_normal;
   }
-  const testing::PathError error = testing::error_to(testing::read_table(job.file("out/corrected.csv")), truth);
+  const testing::PathError error =
+      testing::error_to(testing::read_table(job.file("out/corrected.csv")), truth);
   EXPECT_LT(error.mean_mm, kMeanMm);
   EXPECT_LT(error.max_mm, kMaxMm);
   EXPECT_LT(error.axis_mean_deg, 0.5);
-  for (const char* nonsense : {"nan", "inf", "found edge"}) EXPECT_EQ(ran.out.find(nonsense), std::string::npos) << ran.out;
+  for (const char* nonsense : {"nan", "inf", "found edge"})
+    EXPECT_EQ(ran.out.find(nonsense), std::string::npos) << ran.out;
 
   const auto result = nlohmann::json::parse(testing::text_of(job.file("out/result.json")));
   EXPECT_EQ(result.at("results").at("iii_contour_pulled_back").at("judged").at("verdict"), "NOT JUDGED");
