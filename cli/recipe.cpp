@@ -47,6 +47,14 @@ void check_together(const std::filesystem::path& file, const Recipe& recipe,
          "method = \"" + recipe.registration.method + "\"",
          "refine = \"none\", or method = \"subdivision\"",
          {}});
+  const auto& subdivision = recipe.registration.subdivision;
+  const std::string fitting = subdivision.match == "paper" ? "paper" : "local";
+  if (subdivision.stability_points != "none" && subdivision.stability_points != fitting)
+    add({"these stability points have no effect with this matching",
+         where("registration.subdivision"),
+         "match = \"" + subdivision.match + "\", stability_points = \"" + subdivision.stability_points + "\"",
+         "stability_points = \"" + fitting + "\" or \"none\"",
+         {}});
   if (recipe.contour.role == "cut" && recipe.registration.method != "surface")
     add({"role = \"cut\" needs the surface field",
          where("registration"),

@@ -276,8 +276,8 @@ std::vector<Key> subdivision_keys(Recipe::Subdivision& s) {
        .words = {"foot", "paper"}},
       {.name = "registration.subdivision.stability_points",
        .slot = &s.stability_points,
-       .about = "points of the surface that hold a segment: local and matched again, as the paper words "
-                "them, or none",
+       .about = "points of the surface that hold a segment: local (match = foot), as the paper words them "
+                "(match = paper), none",
        .words = {"local", "paper", "none"}},
       {.name = "registration.subdivision.stability_count",
        .slot = &s.stability_count,

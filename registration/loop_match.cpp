@@ -12,7 +12,12 @@ constexpr std::size_t kArcs = 64;
 constexpr std::size_t kKeptShifts = 4;
 constexpr double kNearlyClosedRatio = 0.15;  // ends this near, in lengths: a loop with a gap
 constexpr double kShortestChainRatio =
-    0.35;  // of the CAD loop; a shorter piece does not tell where it belongs
+    0.35;                             // of the CAD loop; a shorter piece does not tell where it belongs
+constexpr double kWindowRatio = 0.5;  // of the CAD loop: what a longer scan loop must follow of it
+constexpr double kWindowFitsRatio =
+    0.03;  // rms over its length: bending and a ragged edge, not another shape
+constexpr double kWindowsALength = 16.0;
+constexpr std::size_t kKeptWindows = 6;
 constexpr double kRaggedRatios[] = {1.0, 0.9};  // a ragged chain is longer than the edge it follows
 
 /// Means over n equal arcs of a stretch of the curve, which smooths a ragged scan edge to the scale of an
@@ -64,14 +69,43 @@ std::vector<RigidFit> fits_of_closed(const Curve& cad, const Curve& scan) {
   return fits;
 }
 
-std::vector<RigidFit> fits_of_chain(const Curve& cad, const Curve& scan, double ragged_ratio) {
-  const std::vector<Eigen::Vector3d> to = arc_means(scan, 0.0, scan.length_mm());
+/// The stretch of the CAD's loop from each of kArcs starts.
+std::vector<std::vector<Eigen::Vector3d>> stretches_of(const Curve& cad, double stretch_mm) {
+  std::vector<std::vector<Eigen::Vector3d>> stretches;
+  for (std::size_t shift = 0; shift < kArcs; ++shift)
+    stretches.push_back(arc_means(
+        cad, cad.length_mm() * static_cast<double>(shift) / static_cast<double>(kArcs), stretch_mm));
+  return stretches;
+}
+
+std::vector<RigidFit> fits_to(const std::vector<std::vector<Eigen::Vector3d>>& stretches,
+                              const std::vector<Eigen::Vector3d>& to) {
   std::vector<RigidFit> fits;
-  for (std::size_t shift = 0; shift < kArcs; ++shift) {
-    const double start_mm = cad.length_mm() * static_cast<double>(shift) / static_cast<double>(kArcs);
-    fits.push_back(fit_rigid(arc_means(cad, start_mm, ragged_ratio * scan.length_mm()), to));
-  }
+  for (const std::vector<Eigen::Vector3d>& from : stretches) fits.push_back(fit_rigid(from, to));
   return fits;
+}
+
+void sort_by_rms(std::vector<LoopMatch>& matches) {
+  std::stable_sort(matches.begin(), matches.end(), [](auto& a, auto& b) { return a.rms_mm < b.rms_mm; });
+}
+
+/// A gap that reaches from the contour to the border of the scan makes one long loop of both: a part of it
+/// still runs along the contour.
+void add_best_windows(const Curve& cad, const Curve& scan, int cad_loop, int scan_loop,
+                      std::vector<LoopMatch>& matches) {
+  const double window_mm = kWindowRatio * cad.length_mm();
+  const double step_mm = cad.length_mm() / kWindowsALength;
+  const std::vector<std::vector<Eigen::Vector3d>> stretches = stretches_of(cad, window_mm);
+  const double last_mm = scan.length_mm() - (scan.closed() ? 0.0 : window_mm);
+  std::vector<LoopMatch> best;
+  for (double start_mm = 0.0; start_mm < last_mm; start_mm += step_mm) {
+    std::vector<LoopMatch> here;
+    add_best_shifts(fits_to(stretches, arc_means(scan, start_mm, window_mm)), cad_loop, scan_loop, here);
+    if (!here.empty() && here.front().rms_mm < kWindowFitsRatio * window_mm) best.push_back(here.front());
+  }
+  sort_by_rms(best);
+  if (best.size() > kKeptWindows) best.resize(kKeptWindows);
+  matches.insert(matches.end(), best.begin(), best.end());
 }
 
 }  // namespace
@@ -93,11 +127,22 @@ std::vector<LoopMatch> match_loops(const std::vector<Contour>& cad_loops,
         add_best_shifts(fits_of_closed(cad, scan), cad_index, scan_index, matches);
       } else if (!loop.closed && ratio > kShortestChainRatio) {
         for (const double ragged : kRaggedRatios)
-          add_best_shifts(fits_of_chain(cad, scan, ragged), cad_index, scan_index, matches);
+          add_best_shifts(
+              fits_to(stretches_of(cad, ragged * scan.length_mm()), arc_means(scan, 0.0, scan.length_mm())),
+              cad_index, scan_index, matches);
       }
     }
+    const bool unmatched = std::none_of(matches.begin(), matches.end(), [&](const LoopMatch& match) {
+      return match.cad_loop == static_cast<int>(c);
+    });
+    for (std::size_t l = 0; unmatched && l < scan_loops.size(); ++l) {
+      if (scan_loops[l].points_mm.size() < 8) continue;
+      const Curve scan(without_small_gap(scan_loops[l]));
+      if (scan.length_mm() > length_ratio * cad.length_mm())
+        add_best_windows(cad, scan, static_cast<int>(c), static_cast<int>(l), matches);
+    }
   }
-  std::stable_sort(matches.begin(), matches.end(), [](auto& a, auto& b) { return a.rms_mm < b.rms_mm; });
+  sort_by_rms(matches);
   return matches;
 }
 

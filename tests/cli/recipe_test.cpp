@@ -310,6 +310,13 @@ TEST(Recipe, ContradictionsAreProblems) {
   const std::string joint = "[registration.subdivision]\nrefine = \"ceres\"\n";
   EXPECT_NE(problem_of(kStarred + joint).find("belongs to method"), std::string::npos);
   EXPECT_EQ(problem_of(kStarred + "[registration]\nmethod = \"subdivision\"\n" + joint), "");
+  const std::string matching = "[registration.subdivision]\nmatch = \"paper\"\n";
+  EXPECT_NE(problem_of(kStarred + matching).find("no effect with this matching"), std::string::npos);
+  for (const char* fitting : {"paper", "none"})
+    EXPECT_EQ(problem_of(kStarred + matching + "stability_points = \"" + fitting + "\"\n"), "");
+  EXPECT_NE(
+      problem_of(kStarred + "[registration.subdivision]\nstability_points = \"paper\"\n").find("no effect"),
+      std::string::npos);
   EXPECT_NE(problem_of(kStarred.substr(0, kStarred.size()) + "initial = {}\n").find("has no pose"),
             std::string::npos);
 }

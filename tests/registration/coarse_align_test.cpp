@@ -67,6 +67,28 @@ TEST(MatchLoops, FindsTheMotionOfALoopAmongOthers) {
   }
 }
 
+TEST(MatchLoops, ALoopThatAGapJoinsToTheBorderIsLaidByTheStretchThatRunsAlongTheContour) {
+  const Contour cad = asymmetric().nominal_contour(0, 1.0);
+  Eigen::Vector3d centre_mm = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : cad.points_mm) centre_mm += p / static_cast<double>(cad.points_mm.size());
+  Contour joined = cad;  // 70 % of the contour, then out through the gap and back round the border
+  const std::size_t along = cad.points_mm.size() * 7 / 10;
+  joined.points_mm.resize(along);
+  joined.normals.resize(along);
+  for (std::size_t i = along; i-- > 0;) {
+    joined.points_mm.push_back(centre_mm + 1.8 * (cad.points_mm[i] - centre_mm));
+    joined.normals.push_back(cad.normals[i]);
+  }
+  synthetic::Random random(5);
+  const RigidMotion truth = scenes::disturbance(random, {0, 0, 0}, 1.0, 500.0);
+  for (Eigen::Vector3d& p : joined.points_mm) p = truth * p;
+  for (Eigen::Vector3d& n : joined.normals) n = truth.linear() * n;
+  double nearest_mm = 1e300;  // the opening looks the same after half a turn: either may come first
+  for (const LoopMatch& match : match_loops({cad}, {joined}))
+    nearest_mm = std::min(nearest_mm, off_mm(asymmetric_cad(), match.scan_from_cad, truth));
+  EXPECT_LT(nearest_mm, 15.0);
+}
+
 TEST(MatchLoops, LoopsOfOtherLengthsAreNotCompared) {
   Contour small = asymmetric().nominal_contour(2, 1.0), large = asymmetric().nominal_contour(0, 1.0);
   EXPECT_TRUE(match_loops({small}, {large}).empty());
