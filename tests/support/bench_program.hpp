@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <set>
 #include <ostream>
+#include <set>
 #include <string>
 
 namespace arris::bench {

@@ -94,9 +94,14 @@ std::vector<Method> projections() {
 }
 
 std::vector<Method> joint_fits() {
-  return {chain("surface field", [](const ScanTrial&, RegistrationOptions& options) {
-    options.method = RegistrationMethod::kSurface;
-  })};
+  return {chain("subdivision, refined",
+                [](const ScanTrial&, RegistrationOptions& options) {
+                  options.method = RegistrationMethod::kSubdivision;
+                  options.refine = RefineMethod::kCeres;
+                }),
+          chain("surface field", [](const ScanTrial&, RegistrationOptions& options) {
+            options.method = RegistrationMethod::kSurface;
+          })};
 }
 
 std::vector<Method> all_methods() {
