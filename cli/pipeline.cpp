@@ -19,7 +19,6 @@ namespace arris {
 namespace {
 
 constexpr double kDeviationReachMm = 25.0;
-constexpr double kSeenStepMm = 2.0;
 constexpr double kMirrorAlikeRatio = 1.3;  // score of the mirror image over the scan's own
 
 /// What makes a start pose impossible because the input is wrong, not because the data are poor.
@@ -84,19 +83,6 @@ RegistrationOptions local_options(const Recipe& recipe, const Eigen::Vector3d& o
   return options;
 }
 
-/// Share of the contours' length where scan points decided.
-double seen_ratio(const Registration& found) {
-  double seen = 0.0, count = 0.0;
-  for (const ContourResult& contour : found.contours) {
-    const Curve& curve = contour.motion.nominal();
-    for (double s_mm = 0.0; s_mm < curve.length_mm(); s_mm += kSeenStepMm) {
-      seen += found.field != nullptr && found.field->map(curve.point_mm(s_mm)).from_data ? 1.0 : 0.0;
-      count += 1.0;
-    }
-  }
-  return count > 0.0 ? seen / count : 0.0;
-}
-
 void describe_alignment(const Registration& found, const Measurement& measurement,
                         AlignmentSummary& alignment) {
   alignment.scan_from_cad = found.rigid.scan_from_cad;
@@ -110,7 +96,12 @@ void describe_alignment(const Registration& found, const Measurement& measuremen
   if (alignment.side_decided_by.empty())
     alignment.side_decided_by = found.coarse.start == "initial pose" ? "initial pose" : "shape";
   alignment.free_directions = found.free_directions;
-  alignment.overlap_ratio = seen_ratio(found);
+  alignment.overlap_ratio = found.seen_ratio;
+  if (found.usable() && !found.rigid.covariance.isZero()) {
+    const double* first = found.rigid.covariance.data();  // symmetric: columns are rows
+    alignment.covariance_6x6.assign(first, first + 36);
+    alignment.covariance_about_mm = found.rigid.pivot_mm;
+  }
 }
 
 void describe_segments(const CadModel& cad, const Registration& found, RunRecord& record) {

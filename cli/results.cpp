@@ -67,7 +67,8 @@ std::string what_is_judged(const std::string& method) {
   if (method == "rigid") return "found edge against the nominal carried rigidly";
   if (method == "surface") return "found edge against the nominal carried by the surface field";
   if (method == "projection")
-    return "found edge against the nominal carried by the projection (an error of the edge cannot be told from "
+    return "found edge against the nominal carried by the projection (an error of the edge cannot be told "
+           "from "
            "bending that moved it in the surface; the uncertainty holds both)";
   return "found edge against the nominal carried by the segments (an error longer than a segment is "
          "followed, "
@@ -99,8 +100,11 @@ void judge_edge(const Registration& found, RunRecord& record) {
 void judge_results(const CadModel& cad, const Registration& found, RunRecord& record) {
   for (std::size_t c = 0; c < cad.contours.size(); ++c)
     record.contour_errors.push_back(error_along(cad, c, found));
-  for (const ContourResult& contour : found.contours)
-    record.edge_limit_mm = std::max(record.edge_limit_mm, contour.edge.edge_limit_mm());
+  if (record.role == "cut")
+    record.edge_limit_mm = kMissing;  // there is no edge to show
+  else
+    for (const ContourResult& contour : found.contours)
+      record.edge_limit_mm = std::max(record.edge_limit_mm, contour.edge.edge_limit_mm());
   const double density = std::max(found.density_per_mm2, 1e-12);
   const double near_points =
       std::max(1.0, density * 0.5 * std::numbers::pi * kSurfaceLimitRadiusMm * kSurfaceLimitRadiusMm);

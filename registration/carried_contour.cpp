@@ -5,19 +5,6 @@
 #include <cmath>
 
 namespace arris {
-namespace {
-
-constexpr double kFanWindowMm = 6.0;
-
-/// Curvature of the contour in the surface at s: positive where the material fans out (a hole's corner).
-double fan_at(const Curve& curve, double arc_mm) {
-  const double window_mm = std::min(kFanWindowMm, curve.length_mm() / 20.0);
-  const Eigen::Vector3d before = curve.tangent(curve.wrap_mm(arc_mm - window_mm));
-  const Eigen::Vector3d after = curve.tangent(curve.wrap_mm(arc_mm + window_mm));
-  return -(after - before).dot(curve.normal(arc_mm).cross(curve.tangent(arc_mm))) / (2.0 * window_mm);
-}
-
-}  // namespace
 
 std::vector<ContourStation> contour_stations(const Curve& curve, const SurfaceBasis& basis, double step_mm) {
   std::vector<ContourStation> stations;
@@ -33,7 +20,7 @@ std::vector<ContourStation> contour_stations(const Curve& curve, const SurfaceBa
       station.point_mm = curve.point_mm(station.arc_mm);
       station.tangent = curve.tangent(station.arc_mm);
       station.inward = inward_of(curve, station.arc_mm);
-      station.fan_per_mm = fan_at(curve, station.arc_mm);
+      station.fan_per_mm = fan_per_mm(curve, station.arc_mm);
       station.row = basis.row(station.point_mm, curve.normal(station.arc_mm));
       if (station.row.usable()) stations.push_back(std::move(station));
     }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "registration/subdivision_icp.hpp"
 
 namespace arris {
@@ -11,8 +13,12 @@ class CarriedCurve {
   explicit CarriedCurve(const ContourMotion& motion);
   /// Nominal arc length of the foot of a scan point; O(log n).
   [[nodiscard]] double arc_of(const Eigen::Vector3d& p_scan_mm, double& distance_mm) const;
+  /// The same, none beyond reach_mm; quicker.
+  [[nodiscard]] std::optional<double> arc_within(const Eigen::Vector3d& p_scan_mm, double reach_mm) const;
 
  private:
+  [[nodiscard]] double nominal_arc_mm(const CurveFoot& foot) const;
+
   const Curve& nominal_;
   Curve curve_;
 };

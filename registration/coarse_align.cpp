@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "acquisition/geometry/median.hpp"
 #include "acquisition/geometry/parallel_for.hpp"
 #include "registration/edge_pairs.hpp"
 #include "registration/loop_match.hpp"
@@ -21,8 +22,9 @@ constexpr std::size_t kRefined = 4;            // candidates a hypothesis that a
 constexpr double kFreeEigenvalueRatio = 1e-4;  // methods: slippage, Gelfand and Guibas 2003
 constexpr double kEdgeKept = 0.75, kSurfaceKept = 0.9;
 constexpr std::size_t kLoopSample = 12;
-constexpr double kMirrorBetterRatio = 0.6;       // of the scores beyond what the point spacing alone leaves
-constexpr double kMirrorOfAmbiguousRatio = 0.8;  // of the scores, when two poses fit alike
+constexpr double kLengthsAgree[] = {0.75, 1.33};  // of a loop of the scan and the contour that it is
+constexpr double kMirrorBetterRatio = 0.6;        // of the scores beyond what the point spacing alone leaves
+constexpr double kMirrorOfAmbiguousRatio = 0.8;   // of the scores, when two poses fit alike
 constexpr double kExtentsAgree[] = {0.8,
                                     15.0};  // of scan and contour: no wrong unit is needed to explain them
 constexpr double kScaledExtentMost = 6.0;   // and in another unit only this far from the contour's
@@ -89,6 +91,17 @@ struct Candidate {
   std::vector<std::string> free;
 };
 
+/// Loops have their material on the left.
+bool runs_around_material(const Contour& loop) {
+  Eigen::Vector3d area = Eigen::Vector3d::Zero(), normal = area;
+  const std::size_t n = loop.points_mm.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    area += (loop.points_mm[i] - loop.points_mm[0]).cross(loop.points_mm[(i + 1) % n] - loop.points_mm[0]);
+    normal += loop.normals[i];
+  }
+  return area.dot(normal) > 0.0;
+}
+
 class Search {
  public:
   Search(const CadModel& cad, const CoarseAlignOptions& options) : cad_(cad), options_(options) {
@@ -128,27 +141,35 @@ class Search {
                      stray_loops2(light, cad_from_scan));
   }
 
-  /// Mean squared distance of the scan's loops from the CAD's contours, followed or not, without the worst
-  /// loop (the border of what was scanned): a second hole in the wrong place gives a wrong pose away.
+  /// Whether a loop of the scan may be another hole of the CAD: it runs around no material, as the border of
+  /// what was scanned does, and has the length of one, as the rim of a gap has hardly ever.
+  bool may_be_other_hole(const Contour& loop) const {
+    if (runs_around_material(loop)) return false;
+    const double loop_mm = length_mm(loop);
+    return std::any_of(cad_.others.begin(), cad_.others.end(), [&](const Curve& hole) {
+      return loop_mm > kLengthsAgree[0] * hole.length_mm() && loop_mm < kLengthsAgree[1] * hole.length_mm() &&
+             !runs_around_material(hole.contour());
+    });
+  }
+
+  /// Mean over the scan's holes of the squared distance, median along the hole, from the CAD's contours,
+  /// followed or not: a second hole in the wrong place gives a wrong pose away.
   double stray_loops2(const ScanModel& light, const RigidMotion& cad_from_scan) const {
     if (cad_.others.empty()) return 0.0;
     std::vector<double> loop2;
     for (const Contour& loop : light.loops) {
+      if (!may_be_other_hole(loop)) continue;
       const std::size_t stride = std::max<std::size_t>(1, loop.points_mm.size() / kLoopSample);
-      double sum = 0.0, count = 0.0;
+      std::vector<double> off2;
       for (std::size_t i = 0; i < loop.points_mm.size(); i += stride) {
         const Eigen::Vector3d x = cad_from_scan * loop.points_mm[i];
         double nearest_mm = cap_mm_;
         for (const auto* curves : {&cad_.contours, &cad_.others})
           for (const Curve& curve : *curves) nearest_mm = std::min(nearest_mm, curve.nearest(x).distance_mm);
-        sum += nearest_mm * nearest_mm;
-        count += 1.0;
+        off2.push_back(nearest_mm * nearest_mm);
       }
-      loop2.push_back(sum / std::max(1.0, count));
+      loop2.push_back(median_of(std::move(off2)));  // around a gap the loop leaves the edge
     }
-    if (loop2.size() < 2) return 0.0;
-    std::sort(loop2.begin(), loop2.end());
-    loop2.pop_back();
     double mean = 0.0;
     for (const double value : loop2) mean += value / static_cast<double>(loop2.size());
     return mean;
@@ -375,9 +396,11 @@ CoarseAlignment coarse_align(const CadModel& cad, const ScanModel& scan, const C
       result.reason = ambiguity(best, other, result.runner_up_ratio);
     break;
   }
+  // A bent part that is nearly its own mirror image fits either way: only said, not called mirrored.
   if (!result.usable() && !side_open && result.mirror_ratio > 0.0 &&
       result.mirror_ratio < kMirrorOfAmbiguousRatio)
-    return call_mirrored();
+    result.reason += "; the scan's mirror image fits better (" + percent(result.mirror_ratio) +
+                     " of the best): was it exported mirrored?";
   if (result.usable() && best.score_mm > 0.8 * search.cap_mm())
     result.reason = "no pose fits: the best start leaves " + millimetres(best.score_mm) + " mm";
   if (!result.usable()) result.unit_ratio = unit_that_fits(cad, scan);

@@ -16,7 +16,7 @@ struct CoarseAlignOptions {
   double band_mm = 60.0;     ///< surface that takes part, around the contours
   bool edges_needed =
       true;  ///< false: an initial pose is taken though the scan shows no contour of the drawing
-  double ambiguity_ratio = 1.15;  ///< runner-up's score over the best's below this: refused
+  double ambiguity_ratio = 1.10;  ///< runner-up's score over the best's below this: refused
   int threads = 0;
 };
 

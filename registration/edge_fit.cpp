@@ -3,24 +3,30 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "acquisition/geometry/median.hpp"
 #include "acquisition/geometry/parallel_for.hpp"
 #include "registration/carried_curve.hpp"
+#include "registration/edge_support.hpp"
+#include "registration/seen_bins.hpp"
 
 namespace arris {
 namespace {
 
-constexpr double kBalance = 0.541;  // log(1 + exp(0.541)) = 1: see fit_edge
 constexpr double kStartTauMm = 2.0;
 constexpr double kTauShrink = 0.6;
 constexpr double kTauFloorMm = 0.03;
 constexpr double kStrayShare = 0.02;  // of the density: points beyond the edge that are no edge at all
 constexpr double kGateSigmas = 4.0;   // height residual of a point that takes part in the edge
-constexpr double kPointsPerBin = 8.0;
 constexpr int kRounds = 30;
-constexpr double kLeastExpectedRatio = 0.5;  // of the scan's median density, beside the contour
 constexpr double kEdgeLimitLengthMm = 50.0;  // an edge is known up to a smooth shift over about this length
 constexpr double kGapBendPerMm = 5e-4;       // how much a part may bend between the two sides of a gap
+constexpr double kNearRatio = 0.5;           // of the strip: how near to the fitted edge there must be points
+constexpr double kChanceMargin =
+    5.0;  // the longest of n random gaps exceeds log n + 5 means once in 150 times
+constexpr std::size_t kFewestForGap = 8;  // points of a stretch that rows are looked for in
+constexpr int kSeenPasses = 6;            // of finding the bins that show the edge, and the edge in them
 constexpr std::size_t kChunk = 512;
 
 /// A scan point in the contour's own coordinates, CAD frame.
@@ -32,13 +38,6 @@ struct StripPoint {
   SplineRow row;
   bool inlier = true;
 };
-
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double variance_at(const SplineRow& row, const Eigen::MatrixXd& covariance) {
   double variance = 0.0;
@@ -52,19 +51,6 @@ double unseen_bend_mm(double to_seen_mm) {
   return 0.5 * kGapBendPerMm * to_seen_mm * to_seen_mm;
 }
 
-double sigmoid(double x) {
-  return x >= 0.0 ? 1.0 / (1.0 + std::exp(-x)) : std::exp(x) / (1.0 + std::exp(x));
-}
-
-/// Curvature of the contour in the surface at s: positive where the material fans out (a hole's inside
-/// corner).
-double fan_per_mm(const Curve& curve, double arc_mm, double window_mm) {
-  const Eigen::Vector3d before = curve.tangent(curve.wrap_mm(arc_mm - window_mm));
-  const Eigen::Vector3d after = curve.tangent(curve.wrap_mm(arc_mm + window_mm));
-  const Eigen::Vector3d inward = curve.normal(arc_mm).cross(curve.tangent(arc_mm));
-  return -(after - before).dot(inward) / (2.0 * window_mm);
-}
-
 class EdgeFitter {
  public:
   EdgeFitter(const CadModel& cad, std::size_t contour, const ScanModel& scan, const ContourMotion& motion,
@@ -75,18 +61,7 @@ class EdgeFitter {
         scan_(scan),
         motion_(motion),
         options_(options),
-        fit_{ArcSpline(curve_.length_mm(), curve_.closed(), options.knot_mm),
-             {},
-             {},
-             {},
-             {},
-             {},
-             {},
-             0.0,
-             {},
-             0.0,
-             0.0,
-             0} {
+        fit_(ArcSpline(curve_.length_mm(), curve_.closed(), options.knot_mm)) {
     strip_mm_ = std::clamp(4.0 * scan.spacing_mm, 3.0, options.strip_mm);
     normal_strip_mm_ = std::clamp(6.0 * scan.spacing_mm, strip_mm_, options.normal_strip_mm);
   }
@@ -94,8 +69,16 @@ class EdgeFitter {
   EdgeFit run() {
     collect();
     fit_height();
-    find_seen_bins();
-    fit_across();
+    // Which bins show an edge depends on where it is, and the other way round: an edge that bending moved
+    // into the material looks like a gap from where it was. From the bins that show it the fit grows along
+    // it.
+    for (int pass = 0; pass < kSeenPasses; ++pass) {
+      const std::vector<char> before = fit_.seen;
+      find_seen(pass == 0 ? strip_mm_ : kNearRatio * strip_mm_);
+      if (fit_.seen == before) break;
+      fit_across();
+    }
+    find_row_gaps();
     return std::move(fit_);
   }
 
@@ -108,9 +91,10 @@ class EdgeFitter {
       for (std::size_t i = begin; i < end; ++i) {
         StripPoint& p = all[i];
         p.inlier = false;
-        double distance_mm = 0.0;
-        p.arc_mm = carried.arc_of(scan_.points_mm[i], distance_mm);
-        if (distance_mm > normal_strip_mm_ + outside_mm) continue;
+        const std::optional<double> arc_mm =
+            carried.arc_within(scan_.points_mm[i], normal_strip_mm_ + outside_mm);
+        if (!arc_mm) continue;
+        p.arc_mm = *arc_mm;
         place(i, p);
         p.inlier = p.across_mm > -outside_mm && p.across_mm < normal_strip_mm_ &&
                    std::abs(p.height_mm) < 3.0 * scan_.spacing_mm + 3.0;
@@ -118,11 +102,9 @@ class EdgeFitter {
     });
     for (StripPoint& p : all)
       if (p.inlier) points_.push_back(p);
-    const double window_mm = std::min(6.0, curve_.length_mm() / 20.0);
     for (StripPoint& p : points_) {
       p.row = fit_.spline.at(p.arc_mm);
-      const double fan = 1.0 + fan_per_mm(curve_, p.arc_mm, window_mm) * std::max(0.0, p.across_mm);
-      p.curve_weight = 1.0 / std::clamp(fan, 0.3, 3.0);
+      p.curve_weight = fan_weight(fan_per_mm(curve_, p.arc_mm), p.across_mm);
     }
   }
 
@@ -196,37 +178,60 @@ class EdgeFitter {
     }
   }
 
-  /// Bins of the contour in which the scan shows material right up to the edge.
-  void find_seen_bins() {
-    double inliers = 0.0;
-    for (const StripPoint& p : points_)
-      if (p.inlier && p.across_mm > -scan_.spacing_mm && p.across_mm < strip_mm_) inliers += p.curve_weight;
-    // Where most of the contour is missing the scan's own spacing still says what to expect.
-    const double expected_per_mm =
-        kLeastExpectedRatio * strip_mm_ / std::max(1e-9, scan_.spacing_mm * scan_.spacing_mm);
-    const double mean_per_mm = std::max({1e-9, inliers / curve_.length_mm(), expected_per_mm});
-    const double bin_mm = std::clamp(kPointsPerBin / mean_per_mm, 2.0, curve_.length_mm() / 8.0);
-    const std::size_t bins = static_cast<std::size_t>(std::floor(curve_.length_mm() / bin_mm));
-    fit_.bin_mm = curve_.length_mm() / static_cast<double>(bins);
-    std::vector<double> all(bins, 0.0), near(bins, 0.0);
+  double inside_of_edge_mm(const StripPoint& p) const { return p.across_mm - p.row.dot(fit_.across); }
+
+  /// Bins of the contour in which the scan shows material right up to the edge as fitted so far.
+  void find_seen(double near_mm) {
+    std::vector<BesidePoint> beside;
+    double weight = 0.0;
     for (const StripPoint& p : points_) {
-      if (!p.inlier || p.across_mm > strip_mm_) continue;
-      const std::size_t b = std::min(bins - 1, static_cast<std::size_t>(p.arc_mm / fit_.bin_mm));
-      all[b] += p.curve_weight;
-      if (p.across_mm < 0.5 * strip_mm_) near[b] += p.curve_weight;
+      const double inside_mm = inside_of_edge_mm(p);
+      if (!p.inlier || inside_mm > strip_mm_) continue;
+      beside.push_back({p.arc_mm, inside_mm, p.curve_weight});
+      if (inside_mm > -scan_.spacing_mm) weight += p.curve_weight;
     }
-    const double expected = expected_per_mm * fit_.bin_mm;
-    const double usual = std::max(median_of(all), expected);
-    const double usual_near = std::max(median_of(near), 0.5 * expected);
-    fit_.seen.assign(bins, 1);
-    for (std::size_t b = 0; b < bins; ++b)
-      if (near[b] < 0.2 * usual_near || all[b] < 0.2 * usual) fit_.seen[b] = 0;
-    const std::vector<char> sure = fit_.seen;
-    for (std::size_t b = 0; b < bins; ++b) {  // the rim of a gap cuts its neighbours too
-      const bool beside_gap = !sure[(b + 1) % bins] || !sure[(b + bins - 1) % bins];
-      if (beside_gap && near[b] < 0.6 * usual_near) fit_.seen[b] = 0;
+    SeenBins found =
+        find_seen_bins(beside, weight, {curve_.length_mm(), strip_mm_, near_mm, scan_.spacing_mm});
+    fit_.bin_mm = found.bin_mm;
+    fit_.seen = std::move(found.seen);
+    fit_.density_per_mm2 = found.density_per_mm2;
+  }
+
+  /// Bins where rows of points run along the edge: it may be anywhere from the last row to where the next
+  /// would be. Counted from the fitted edge inward, the points of a stretch then leave a gap that chance does
+  /// not leave.
+  void find_row_gaps() {
+    const std::size_t bins = fit_.seen.size();
+    std::vector<std::vector<double>> inside_mm(bins);
+    for (const StripPoint& p : points_)
+      if (p.inlier && fit_.seen_at(p.arc_mm))
+        inside_mm[std::min(bins - 1, static_cast<std::size_t>(p.arc_mm / fit_.bin_mm))].push_back(
+            inside_of_edge_mm(p));
+    const auto reach = static_cast<int>(0.5 * kEdgeLimitLengthMm / fit_.bin_mm);
+    fit_.row_gap_mm.assign(bins, 0.0);
+    for (std::size_t b = 0; b < bins; ++b) {
+      std::vector<double> window_mm;
+      for (int k = -reach; k <= reach; ++k) {
+        const int at = static_cast<int>(b) + k, count = static_cast<int>(bins);
+        if (!curve_.closed() && (at < 0 || at >= count)) continue;
+        const std::vector<double>& add = inside_mm[static_cast<std::size_t>((at + count) % count)];
+        window_mm.insert(window_mm.end(), add.begin(), add.end());
+      }
+      fit_.row_gap_mm[b] = unlikely_gap_mm(std::move(window_mm));
     }
-    fit_.density_per_mm2 = usual / (fit_.bin_mm * strip_mm_);
+  }
+
+  /// The longest gap that begins in the strip (a stray beyond the edge begins none), if points in random
+  /// places would hardly leave it; else 0.
+  [[nodiscard]] double unlikely_gap_mm(std::vector<double> inside_mm) const {
+    if (inside_mm.size() < kFewestForGap) return 0.0;
+    std::sort(inside_mm.begin(), inside_mm.end());
+    const double count = static_cast<double>(inside_mm.size());
+    const double mean_gap_mm = normal_strip_mm_ / count;
+    double gap_mm = 0.0;
+    for (std::size_t i = 1; i < inside_mm.size() && inside_mm[i - 1] < strip_mm_; ++i)
+      if (inside_mm[i - 1] > -2.0 * mean_gap_mm) gap_mm = std::max(gap_mm, inside_mm[i] - inside_mm[i - 1]);
+    return gap_mm > (std::log(count) + kChanceMargin) * mean_gap_mm ? gap_mm : 0.0;
   }
 
   /// Newton on the one-sided potential, tau shrinking from kStartTauMm to 1 / (density * knot).
@@ -256,18 +261,13 @@ class EdgeFitter {
                      Eigen::MatrixXd& curvature) {
     curvature = prior;
     Eigen::VectorXd gradient = prior * fit_.across;
+    const EdgeSupport support{tau, strip_mm_, kStrayShare};
     for (const StripPoint* p : active) {
-      const double g = p->across_mm - p->row.dot(fit_.across);
-      if (g > strip_mm_) continue;
-      const double x = g / tau - kBalance;
-      const double inside = sigmoid(x);
-      const double trusted = inside / (inside + kStrayShare);
-      const double outward =
-          p->curve_weight * trusted * (1.0 - inside) / tau;  // the point pushes the edge outward
-      const double inward = g > 0.0 ? p->curve_weight / strip_mm_ : 0.0;
-      const double bend = p->curve_weight * trusted * bounded_curvature(x) / (tau * tau);
+      const EdgeSupport::Pull pull = support.at(inside_of_edge_mm(*p));
+      const double slope = p->curve_weight * pull.slope_per_mm;
+      const double bend = p->curve_weight * pull.curvature_per_mm2;
       for (std::size_t a = 0; a < 4; ++a) {
-        gradient[p->row.index[a]] += (outward - inward) * p->row.value[a];
+        gradient[p->row.index[a]] -= slope * p->row.value[a];
         for (std::size_t b = 0; b < 4; ++b)
           curvature(p->row.index[a], p->row.index[b]) += bend * p->row.value[a] * p->row.value[b];
       }
@@ -275,14 +275,6 @@ class EdgeFitter {
     const Eigen::VectorXd step = curvature.ldlt().solve(gradient);
     fit_.across -= step;
     return step.cwiseAbs().maxCoeff();
-  }
-
-  /// Curvature of -log sigmoid, with the quadratic bound tanh(x/2) / (2x) where Newton would overshoot (x <
-  /// 0).
-  static double bounded_curvature(double x) {
-    if (x < -1e-6) return std::tanh(0.5 * x) / (2.0 * x);
-    const double s = sigmoid(x);
-    return s * (1.0 - s);
   }
 
   const CadModel& cad_;
@@ -298,10 +290,22 @@ class EdgeFitter {
 
 }  // namespace
 
+EdgeFit::EdgeFit(ArcSpline along) : spline(std::move(along)) {
+  const int n = spline.size();
+  across = height = tilt = Eigen::VectorXd::Zero(n);
+  across_covariance = height_covariance = tilt_covariance = Eigen::MatrixXd::Zero(n, n);
+}
+
 bool EdgeFit::seen_at(double arc_mm) const {
   if (seen.empty()) return false;
   const double bin = arc_mm / bin_mm;
   return seen[std::min(seen.size() - 1, static_cast<std::size_t>(std::max(0.0, bin)))] != 0;
+}
+
+double EdgeFit::row_gap_at_mm(double arc_mm) const {
+  if (row_gap_mm.empty()) return 0.0;
+  const double bin = std::max(0.0, arc_mm / bin_mm);
+  return row_gap_mm[std::min(row_gap_mm.size() - 1, static_cast<std::size_t>(bin))];
 }
 
 double EdgeFit::to_seen_mm(double arc_mm, bool closed) const {
@@ -326,7 +330,7 @@ double EdgeFit::edge_limit_mm() const {
 
 double EdgeFit::sd_across_mm(double arc_mm, bool closed) const {
   const double gap_mm = unseen_bend_mm(to_seen_mm(arc_mm, closed));
-  const double limit_mm = edge_limit_mm();
+  const double limit_mm = std::max(edge_limit_mm(), row_gap_at_mm(arc_mm) / std::sqrt(12.0));
   return std::sqrt(variance_at(spline.at(arc_mm), across_covariance) + limit_mm * limit_mm + gap_mm * gap_mm);
 }
 

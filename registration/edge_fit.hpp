@@ -32,15 +32,20 @@ struct EdgeFit {
   Eigen::MatrixXd tilt_covariance;  ///< rad^2
   double bin_mm = 0.0;
   std::vector<char> seen;          ///< a bin of arc length: did the scan show the edge here?
+  std::vector<double> row_gap_mm;  ///< a bin: how far apart rows of points run along the edge; 0: none do
   double density_per_mm2 = 0.0;    ///< median over the seen bins
   double residual_sigma_mm = 0.0;  ///< robust residual of the height fit
   std::size_t points = 0;          ///< inliers of the height fit
 
+  /// Nothing found yet: zero on this spline.
+  explicit EdgeFit(ArcSpline along);
   [[nodiscard]] bool seen_at(double arc_mm) const;
+  [[nodiscard]] double row_gap_at_mm(double arc_mm) const;
   /// Arc length to the nearest place where the edge was seen; 0 where it was.
   [[nodiscard]] double to_seen_mm(double arc_mm, bool closed) const;
   /// Standard deviations at s: of the fit, the edge limit 1 / (density * 50 mm) that no scan of this density
-  /// goes below across the contour, and what a part may bend unseen inside a gap.
+  /// goes below across the contour (or that of an edge anywhere between two rows), and what a part may bend
+  /// unseen inside a gap.
   [[nodiscard]] double sd_across_mm(double arc_mm, bool closed) const;
   [[nodiscard]] double sd_height_mm(double arc_mm, bool closed) const;
   [[nodiscard]] double sd_tilt_rad(double arc_mm) const;
@@ -55,9 +60,15 @@ struct EdgeFit {
 /// strip pulls inward by 1 / strip, its share of the density. With log(1 + exp(0.541)) = 1 the two balance
 /// without bias for a uniform density at any tau. Averaging boundary points instead keeps a bias of 0.4
 /// to 1.3 point spacings.
+/// Where it is seen is judged from the fitted edge, and it is fitted where it is seen, in turn: an edge that
+/// bending moved into the material would look like a gap from where it was.
 ///   scan     carried back to the CAD by `motion`; points off the surface by more than 4 sigma (walls,
-///   strays) left out returns  shift across, height and tilt along the contour; where a patch is missing the
-///   splines' stiffness decides cost     O(points in the strips) + dense solves of the knot count
+///   strays)
+///            left out
+///   returns  shift across, height and tilt along the contour; where a patch is missing the splines'
+///   stiffness
+///            decides
+///   cost     O(points in the strips) + dense solves of the knot count
 [[nodiscard]] EdgeFit fit_edge(const CadModel& cad, std::size_t contour, const ScanModel& scan,
                                const ContourMotion& motion, const EdgeFitOptions& options);
 

@@ -3,14 +3,16 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "acquisition/geometry/median.hpp"
+
 namespace arris {
 
 EdgePair pair_edge(const CadModel& cad, const Eigen::Vector3d& p_cad_mm, double reach_mm) {
   EdgePair pair;
   pair.foot.distance_mm = reach_mm;
   for (std::size_t c = 0; c < cad.contours.size(); ++c) {
-    const CurveFoot foot = cad.contours[c].nearest(p_cad_mm);
-    if (foot.distance_mm >= pair.foot.distance_mm) continue;
+    const CurveFoot foot = cad.contours[c].nearest_within(p_cad_mm, pair.foot.distance_mm);
+    if (foot.segment < 0) continue;
     pair.contour = static_cast<int>(c);
     pair.foot = foot;
   }
@@ -40,9 +42,7 @@ std::vector<LoopAssignment> assign_loops(const CadModel& cad, const std::vector<
     }
     LoopAssignment assignment;
     if (!distance_mm.empty()) {
-      const auto middle = distance_mm.begin() + static_cast<std::ptrdiff_t>(distance_mm.size() / 2);
-      std::nth_element(distance_mm.begin(), middle, distance_mm.end());
-      assignment.median_mm = *middle;
+      assignment.median_mm = median_of(std::move(distance_mm));
       const std::size_t contour =
           static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
       const double size_mm = cad.contours[contour].length_mm() / 6.28;

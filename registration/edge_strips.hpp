@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "registration/carried_contour.hpp"
+#include "registration/edge_claims.hpp"
+#include "registration/seen_bins.hpp"
 #include "registration/surface_pairs.hpp"
 
 namespace arris {
@@ -31,12 +33,16 @@ class EdgeStrips {
   void add(std::size_t begin, std::size_t end, const std::vector<double>& offset_mm, double tau_mm,
            double stray_ratio, SurfaceSystem& system) const;
 
+  /// The points that pull their edge outward.
+  [[nodiscard]] std::vector<EdgeClaim> claims(const std::vector<double>& offset_mm, double tau_mm,
+                                              double stray_ratio) const;
+  /// From now on this pair pulls no edge outward.
+  void call_stray(std::size_t pair) { stray_[pair] = 1; }
+
   [[nodiscard]] std::size_t size() const { return edges_.size(); }
   [[nodiscard]] const std::vector<ContourStation>& stations(std::size_t edge) const {
     return edges_[edge].stations;
   }
-  /// Median over the bins; points per mm^2.
-  [[nodiscard]] double density_per_mm2(std::size_t edge) const { return edges_[edge].density_per_mm2; }
   /// Scale of the support at which an edge known up to a smooth shift over `share_ratio` of its length shows
   /// itself: 1 / (density * share * length), the largest over the edges.
   [[nodiscard]] double finest_tau_mm(double share_ratio) const;
@@ -48,15 +54,16 @@ class EdgeStrips {
     const Curve* curve = nullptr;
     std::vector<ContourStation> stations;
     std::vector<Eigen::Vector3d> inward;  // deformed, one a station
-    std::vector<char> seen;
-    double bin_mm = 1.0, density_per_mm2 = 0.0;
+    SeenBins bins;
   };
-  [[nodiscard]] std::size_t bin_of(const Edge& edge, double arc_mm) const;
   void find_seen(std::size_t e);
+  [[nodiscard]] bool counts(std::size_t point) const;
+  void set_row(const Point& point, SurfaceSystem::Row& row) const;
 
   std::vector<Edge> edges_;
   double strip_mm_, spacing_mm_;
   std::vector<Point> points_;
+  std::vector<char> stray_;  // one a pair
 };
 
 }  // namespace arris

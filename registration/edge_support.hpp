@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace arris {
@@ -19,11 +20,18 @@ struct EdgeSupport {
   struct Pull {
     double slope_per_mm = 0.0, curvature_per_mm2 = 0.0;
   };
+  /// The cost without its constant pull; that of a stray is -log(stray_ratio).
+  [[nodiscard]] double cost(double inside_mm) const {
+    return -std::log(sigmoid(inside_mm / tau_mm - kBalance) + stray_ratio);
+  }
+  static double sigmoid(double x) {
+    return x >= 0.0 ? 1.0 / (1.0 + std::exp(-x)) : std::exp(x) / (1.0 + std::exp(x));
+  }
   [[nodiscard]] Pull at(double inside_mm) const {
     Pull pull;
     if (inside_mm > strip_mm) return pull;
     const double x = inside_mm / tau_mm - kBalance;
-    const double inside = x >= 0.0 ? 1.0 / (1.0 + std::exp(-x)) : std::exp(x) / (1.0 + std::exp(x));
+    const double inside = sigmoid(x);
     const double trusted = inside / (inside + stray_ratio);
     pull.slope_per_mm = -trusted * (1.0 - inside) / tau_mm + (inside_mm > 0.0 ? 1.0 / strip_mm : 0.0);
     const double bend = x < -1e-6 ? std::tanh(0.5 * x) / (2.0 * x) : inside * (1.0 - inside);
@@ -31,5 +39,11 @@ struct EdgeSupport {
     return pull;
   }
 };
+
+/// Weight of a point across_mm inside a bent edge: the strip's area per length of the edge grows where the
+/// material fans out (Curve's fan_per_mm), and so would the number of its points.
+[[nodiscard]] inline double fan_weight(double fan_per_mm, double across_mm) {
+  return 1.0 / std::clamp(1.0 + fan_per_mm * std::max(0.0, across_mm), 0.3, 3.0);
+}
 
 }  // namespace arris

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "acquisition/geometry/median.hpp"
 #include "acquisition/geometry/parallel_for.hpp"
 #include "acquisition/types/error.hpp"
 #include "registration/normal_equations.hpp"
@@ -32,9 +33,7 @@ SurfaceHeight in_surface(double height_mm, const Eigen::Vector3d& gradient, cons
 }
 
 double robust_scale_mm(std::vector<double> sizes) {
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return kScaleSigmas * std::max(kSigmaOfMedian * *middle, kLeastSigmaMm);
+  return kScaleSigmas * std::max(kSigmaOfMedian * median_of(std::move(sizes)), kLeastSigmaMm);
 }
 
 /// Weights of the next round from the residuals of this one.

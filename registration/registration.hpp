@@ -59,13 +59,9 @@ struct Registration {
   double face_strain_ratio = 0.0;   ///< the same on the scanned face, which bending alone lengthens
   double strain_limit_ratio = 0.0;  ///< what the edge limit makes of it: the scan shows no smaller strain
   double density_per_mm2 = 0.0;
+  double seen_ratio = 0.0;  ///< share of the contours' length where scan points decided
   [[nodiscard]] bool usable() const { return field != nullptr; }
 };
-
-/// The found edge of each contour relative to the nominal carried by its motion.
-[[nodiscard]] std::vector<ContourResult> with_edges(const CadModel& cad, const ScanModel& scan,
-                                                    std::vector<ContourMotion> motions,
-                                                    const EdgeFitOptions& options);
 
 /// All stages in order: start pose, rigid ICP, subdivision ICP on the scan's edge points, the edge by
 /// one-sided support, subdivision ICP again on that sharpened edge, and the edge once more. Angle-gap edge

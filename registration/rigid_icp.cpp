@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/geometry/median.hpp"
 #include "acquisition/geometry/parallel_for.hpp"
 #include "acquisition/geometry/rigid_fit.hpp"
 #include "acquisition/types/error.hpp"
@@ -18,14 +19,9 @@ constexpr double kCosNormalsAgree = 0.5;          // correspondences need normal
 constexpr double kAnneal = 0.7;                   // robust scale of the next round over this one
 constexpr double kDamping = 1e-4;                 // of the largest eigenvalue
 constexpr double kFreeEigenvalueRatio = 1e-4;     // of the largest: a direction that the data leave free
+constexpr double kStretchMm = 80.0;               // of contour: misfit farther apart counts as independent
+constexpr double kFewestStretches = 8.0, kMostStretches = 24.0;
 constexpr std::size_t kChunk = 256;
-
-double median_of(std::vector<double>& values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Scan points that can belong to the band around the contours at the start pose, thinned to a fixed count.
 std::vector<std::size_t> band_sample(const CadModel& cad, const ScanModel& scan,
@@ -51,14 +47,16 @@ struct Residual {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   double value_mm = 0.0;
+  std::int32_t triangle = -1;
   bool valid = false;
 };
 
 Residual surface_residual(const CadModel& cad, const ScanModel& scan, std::size_t i,
-                          const RigidMotion& cad_from_scan, double reach_mm) {
+                          const RigidMotion& cad_from_scan, double reach_mm, std::int32_t hint) {
   Residual residual;
   residual.x = cad_from_scan * scan.points_mm[i];
-  const SurfacePoint foot = cad.surface.closest(residual.x, reach_mm);
+  const SurfacePoint foot = cad.surface.closest(residual.x, reach_mm, hint);
+  residual.triangle = foot.triangle;
   if (foot.triangle < 0 || foot.on_border) return residual;
   const double agree = foot.normal.dot(cad_from_scan.linear() * scan.normals[i]);
   if ((scan.side == SideKnown::kYes ? agree : std::abs(agree)) < kCosNormalsAgree) return residual;
@@ -111,35 +109,45 @@ class PointToPlane {
     }
     result.scan_from_cad = cad_from_scan_.inverse();
     result.pivot_mm = pivot_;
+    if (options_.with_covariance) result.covariance = covariance();
     if (!cad_from_scan_.matrix().allFinite()) result.reason = "the fit did not stay finite";
     return result;
   }
 
  private:
-  Round accumulate() {
-    std::vector<Residual> surface(sample_.size());
+  void find_partners() {
+    surface_.resize(sample_.size());
+    edges_.resize(scan_.edge_mm.size());
     const double reach_mm = 3.0 * scale_mm_ + scan_.spacing_mm;
     parallel_for(sample_.size(), kChunk, options_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        surface[i] = surface_residual(cad_, scan_, sample_[i], cad_from_scan_, reach_mm);
+        surface_[i] =
+            surface_residual(cad_, scan_, sample_[i], cad_from_scan_, reach_mm, surface_[i].triangle);
     });
-    std::vector<EdgePair> edges(scan_.edge_mm.size());
-    parallel_for(edges.size(), kChunk, options_.threads, [&](std::size_t begin, std::size_t end) {
+    parallel_for(edges_.size(), kChunk, options_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        edges[i] = pair_edge(cad_, cad_from_scan_ * scan_.edge_mm[i], reach_mm);
+        edges_[i] = pair_edge(cad_, cad_from_scan_ * scan_.edge_mm[i], reach_mm);
     });
+  }
+
+  /// What one surface point counts.
+  [[nodiscard]] double surface_share() const {
+    const auto valid = std::count_if(surface_.begin(), surface_.end(), [](const auto& r) { return r.valid; });
+    return kSurfaceCountsAsPoints / std::max(1.0, static_cast<double>(valid));
+  }
+
+  Round accumulate() {
+    find_partners();
     Round round;
     std::vector<double> sizes;
-    std::size_t valid = 0;
-    for (const Residual& r : surface) valid += r.valid ? 1 : 0;
-    const double share = kSurfaceCountsAsPoints / std::max(1.0, static_cast<double>(valid));
-    for (const Residual& r : surface) {
+    const double share = surface_share();
+    for (const Residual& r : surface_) {
       if (!r.valid) continue;
       round.surface.add(r.x - pivot_, r.direction, r.value_mm, share * weight(r.value_mm * r.value_mm));
       ++round.pairs;
     }
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-      const EdgePair& e = edges[i];
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      const EdgePair& e = edges_[i];
       if (e.contour < 0) continue;
       const double size2 = e.across_mm * e.across_mm + e.normal_mm * e.normal_mm;
       const double w = weight(size2);
@@ -149,7 +157,7 @@ class PointToPlane {
       sizes.push_back(std::sqrt(size2));
       ++round.pairs;
     }
-    floor_mm_ = std::max(2.0 * scan_.spacing_mm, 3.0 * 1.4826 * median_of(sizes));
+    floor_mm_ = std::max(2.0 * scan_.spacing_mm, 3.0 * 1.4826 * median_of(std::move(sizes)));
     return round;
   }
 
@@ -169,15 +177,73 @@ class PointToPlane {
     result.information = both.information;
   }
 
+  /// Pull on the pose, stretch by stretch of the contours, at the pose found.
+  [[nodiscard]] std::vector<NormalEquations> pull_of_stretches() const {
+    std::vector<std::size_t> first = {0};
+    std::vector<double> stretch_mm;
+    for (const Curve& curve : cad_.contours) {
+      const double count = std::clamp(curve.length_mm() / kStretchMm, kFewestStretches, kMostStretches);
+      stretch_mm.push_back(curve.length_mm() / std::floor(count));
+      first.push_back(first.back() + static_cast<std::size_t>(count));
+    }
+    std::vector<NormalEquations> pull(first.back());
+    const auto of = [&](const EdgePair& pair) -> NormalEquations& {
+      const auto c = static_cast<std::size_t>(pair.contour);
+      return pull[std::min(first[c + 1] - 1,
+                           first[c] + static_cast<std::size_t>(pair.foot.arc_mm / stretch_mm[c]))];
+    };
+    const double share = surface_share();
+    for (const Residual& r : surface_) {
+      if (!r.valid) continue;
+      of(pair_edge(cad_, r.x, 1e9))
+          .add(r.x - pivot_, r.direction, r.value_mm, share * weight(r.value_mm * r.value_mm));
+    }
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      const EdgePair& e = edges_[i];
+      if (e.contour < 0) continue;
+      const double w = weight(e.across_mm * e.across_mm + e.normal_mm * e.normal_mm);
+      const Eigen::Vector3d x = cad_from_scan_ * scan_.edge_mm[i] - pivot_;
+      of(e).add(x, e.across, e.across_mm, w);
+      of(e).add(x, e.normal, e.normal_mm, w);
+    }
+    return pull;
+  }
+
+  /// Information^-1 * scatter of the pulls * information^-1 (a sandwich over clusters: Liang and Zeger,
+  /// Biometrika 73, 1986), where the data determine the motion.
+  [[nodiscard]] Eigen::Matrix<double, 6, 6> covariance() {
+    using Matrix6 = Eigen::Matrix<double, 6, 6>;
+    find_partners();
+    const std::vector<NormalEquations> pull = pull_of_stretches();
+    NormalEquations all;
+    for (const NormalEquations& one : pull) all += one;
+    const Eigen::Matrix<double, 6, 1> scale = turn_scale(all);
+    const double count = static_cast<double>(pull.size());
+    Matrix6 scatter = Matrix6::Zero();
+    for (const NormalEquations& one : pull) {
+      const Eigen::Matrix<double, 6, 1> off = one.gradient - all.gradient / count;
+      scatter +=
+          count / (count - 2.0) * off * off.transpose();  // a stretch gives three numbers, the pose takes 6
+    }
+    const Determined known = determined(all.information, 1.0 / scale[0]);
+    return known.inverse * scatter * known.inverse + known.free;
+  }
+
+  /// Makes a turn count by what it moves.
+  static Eigen::Matrix<double, 6, 1> turn_scale(const NormalEquations& both) {
+    const double reach_mm =
+        std::sqrt(both.information.topLeftCorner<3, 3>().trace() / (2.0 * both.weight + 1e-12)) + 1e-6;
+    Eigen::Matrix<double, 6, 1> scale;
+    scale << Eigen::Vector3d::Constant(1.0 / reach_mm), Eigen::Vector3d::Ones();
+    return scale;
+  }
+
   /// Moves cad_from_scan by one damped Gauss-Newton step, but not along directions that the data leave free:
   /// there the gradient is noise over nothing, and a circle would spin about its axis by degrees a round.
   double step(const Round& round) {
     NormalEquations both = round.surface;
     both += round.edge;
-    const double reach_mm =
-        std::sqrt(both.information.topLeftCorner<3, 3>().trace() / (2.0 * both.weight + 1e-12)) + 1e-6;
-    Eigen::Matrix<double, 6, 1> scale;  // a turn counts by what it moves
-    scale << Eigen::Vector3d::Constant(1.0 / reach_mm), Eigen::Vector3d::Ones();
+    const Eigen::Matrix<double, 6, 1> scale = turn_scale(both);
     const Eigen::Matrix<double, 6, 6> scaled = scale.asDiagonal() * both.information * scale.asDiagonal();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(scaled);
     const Eigen::Matrix<double, 6, 1> gradient =
@@ -189,7 +255,7 @@ class PointToPlane {
         along[i] = -gradient[i] / (eigen.eigenvalues()[i] + kDamping * largest);
     const Eigen::Matrix<double, 6, 1> delta = scale.cwiseProduct(eigen.eigenvectors() * along);
     cad_from_scan_ = motion_of(delta, pivot_) * cad_from_scan_;
-    return delta.tail<3>().norm() + delta.head<3>().norm() * reach_mm;
+    return delta.tail<3>().norm() + delta.head<3>().norm() / scale[0];
   }
 
   const CadModel& cad_;
@@ -198,10 +264,29 @@ class PointToPlane {
   RigidMotion cad_from_scan_;
   Eigen::Vector3d pivot_ = Eigen::Vector3d::Zero();
   std::vector<std::size_t> sample_;
+  std::vector<Residual> surface_;  // of sample_
+  std::vector<EdgePair> edges_;    // of scan_.edge_mm
   double scale_mm_ = 0.0, floor_mm_ = 0.0;
 };
 
 }  // namespace
+
+Determined determined(const Eigen::Matrix<double, 6, 6>& information, double reach_mm) {
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  Eigen::Matrix<double, 6, 1> scale;
+  scale << Eigen::Vector3d::Constant(1.0 / reach_mm), Eigen::Vector3d::Ones();
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(
+      Matrix6(scale.asDiagonal() * information * scale.asDiagonal()));
+  Eigen::Matrix<double, 6, 1> inverse = Eigen::Matrix<double, 6, 1>::Zero(), free = inverse;
+  for (int i = 0; i < 6; ++i) {
+    if (eigen.eigenvalues()[i] > kFreeEigenvalueRatio * eigen.eigenvalues()[5])
+      inverse[i] = 1.0 / eigen.eigenvalues()[i];
+    else
+      free[i] = reach_mm * reach_mm;
+  }
+  const Matrix6 v = scale.asDiagonal() * eigen.eigenvectors();
+  return {v * inverse.asDiagonal() * v.transpose(), v * free.asDiagonal() * v.transpose()};
+}
 
 void RigidIcpOptions::check() const {
   if (max_iterations < 1 || max_iterations > 10000)

@@ -18,6 +18,7 @@ struct RigidIcpOptions {
   double start_scale_mm = 20.0;     ///< robust scale at the start: about the error of the start pose
   double band_mm = 60.0;            ///< scan points farther from every contour are left out
   bool robust = true;  ///< annealed Geman-McClure weights; false: plain least squares within the band
+  bool with_covariance = false;  ///< fill RigidIcpResult::covariance (icp_point_to_plane)
   int threads = 0;
   void check() const;
 };
@@ -36,8 +37,20 @@ struct RigidIcpResult {
   Eigen::Matrix<double, 6, 6> information =
       Eigen::Matrix<double, 6, 6>::Zero();             ///< unit-weight, about pivot_mm, Cad
   Eigen::Vector3d pivot_mm = Eigen::Vector3d::Zero();  ///< CAD frame
+  /// Of a small motion of the part (turn in rad, then shift in mm) about pivot_mm, CAD axes; zero: not asked
+  /// for. From how the pull on the pose scatters between stretches of the contour, some 100 mm each with the
+  /// surface beside it, so misfit that is alike within a stretch counts once. In a direction that the data
+  /// leave free: 1 rad, or what 1 rad moves.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   [[nodiscard]] bool usable() const { return reason.empty(); }
 };
+
+/// Inverse of an information matrix where the data determine the motion, and the covariance of the directions
+/// that they leave free: 1 rad, or the reach_mm that a turn of 1 rad moves.
+struct Determined {
+  Eigen::Matrix<double, 6, 6> inverse, free;
+};
+[[nodiscard]] Determined determined(const Eigen::Matrix<double, 6, 6>& information, double reach_mm);
 
 /// The paper's ICP (section 2.1): every model point, its nearest data point, Horn's closed form, repeat.
 /// Repairs: Phi is the nearest POINT (the printed Phi is a distance); eq. 2 squares the norm; the loop goes

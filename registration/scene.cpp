@@ -1,11 +1,25 @@
 #include "registration/scene.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 namespace arris {
+namespace {
+
+constexpr double kFanWindowMm = 6.0;
+
+}  // namespace
 
 Eigen::Vector3d inward_of(const Curve& contour, double arc_mm) {
   return contour.normal(arc_mm).cross(contour.tangent(arc_mm)).normalized();
+}
+
+double fan_per_mm(const Curve& contour, double arc_mm) {
+  const double window_mm = std::min(kFanWindowMm, contour.length_mm() / 20.0);
+  const Eigen::Vector3d before = contour.tangent(contour.wrap_mm(arc_mm - window_mm));
+  const Eigen::Vector3d after = contour.tangent(contour.wrap_mm(arc_mm + window_mm));
+  const Eigen::Vector3d inward = contour.normal(arc_mm).cross(contour.tangent(arc_mm));
+  return -(after - before).dot(inward) / (2.0 * window_mm);
 }
 
 Eigen::Vector3d CadModel::inward(std::size_t c, double arc_mm) const {

@@ -15,6 +15,10 @@ namespace arris {
 /// Unit direction in the surface at s of a contour, across it, into the material: normal x tangent.
 [[nodiscard]] Eigen::Vector3d inward_of(const Curve& contour, double arc_mm);
 
+/// Curvature of a contour in the surface at s, 1/mm: positive where the material fans out behind it (the
+/// inside corner of a hole).
+[[nodiscard]] double fan_per_mm(const Curve& contour, double arc_mm);
+
 /// The drawing, ready for queries: frame Cad, mm. Built once a part number.
 struct CadModel {
   SurfaceQuery surface;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "acquisition/geometry/median.hpp"
 #include "registration/carried_curve.hpp"
 #include "registration/segment_pairs.hpp"
 
@@ -20,12 +21,9 @@ constexpr double kFreeMm = 50.0,
 constexpr double kLeastSeamMm = 0.02;  // short segments bend little, but are no surer than this
 
 double median_norm(const std::vector<CarriedCost>& costs) {
-  if (costs.empty()) return 0.0;
   std::vector<double> sizes;
   for (const CarriedCost& cost : costs) sizes.push_back((cost.directions * cost.gap_mm).norm());
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle;
+  return median_of(std::move(sizes));
 }
 
 /// Segments of all contours in one row.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/geometry/median.hpp"
+
 namespace arris {
 namespace {
 
@@ -43,11 +45,8 @@ Shell shell_of(std::span<const Eigen::Vector3d> points_mm, const std::vector<std
 }
 
 double robust_sigma_mm(std::vector<double> off_mm) {
-  if (off_mm.empty()) return 0.0;
   for (double& value : off_mm) value = std::abs(value);
-  const auto middle = off_mm.begin() + static_cast<std::ptrdiff_t>(off_mm.size() / 2);
-  std::nth_element(off_mm.begin(), middle, off_mm.end());
-  return kMadToSigma * *middle;
+  return kMadToSigma * median_of(std::move(off_mm));
 }
 
 /// Radius that the points have of their own, and its standard deviation for noise of `sigma_mm`: one

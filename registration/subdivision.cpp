@@ -14,6 +14,7 @@ constexpr double kShortestPieceRatio = 0.1;  // of epsilon: shorter pieces join 
 
 /// Arc positions where a run of corner points begins or ends.
 std::vector<double> corner_cuts(const Curve& curve, double corner_radius_max_mm) {
+  if (corner_radius_max_mm == 0.0) return {};
   const double window_mm = std::min(kCornerWindowMm, curve.length_mm() / 12.0);
   const std::vector<double> radius_mm = bend_radius_mm(curve.contour(), window_mm);
   std::vector<double> cuts;

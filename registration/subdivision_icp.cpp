@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/geometry/median.hpp"
 #include "acquisition/geometry/parallel_for.hpp"
 #include "acquisition/geometry/rigid_fit.hpp"
 #include "acquisition/types/error.hpp"
@@ -26,6 +27,7 @@ constexpr std::size_t kChunk = 512;
 struct StabilityPoint {
   std::size_t scan_index = 0;
   double arc_mm = 0.0;
+  std::int32_t triangle = -1;  // of the last round
 };
 
 double log_angle(const RigidMotion& motion, Eigen::Vector3d& turn) {
@@ -45,7 +47,7 @@ class FootFit {
         scan_(scan),
         data_(data),
         options_(options),
-        subdivision_(curve_, options.subdivision) {
+        subdivision_(earlier != nullptr ? earlier->subdivision() : Subdivision(curve_, options.subdivision)) {
     SegmentFit start;
     start.scan_from_cad = rigid;
     fits_.assign(subdivision_.segments().size(), start);
@@ -81,10 +83,7 @@ class FootFit {
       const EdgePair pair = pair_edge(cad_, cad_from_scan * e, kFarthestStartMm);
       if (pair.contour == contour_) sizes.push_back(std::hypot(pair.across_mm, pair.normal_mm));
     }
-    if (sizes.empty()) return 1.0;
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    return 3.0 * *middle;
+    return sizes.empty() ? 1.0 : 3.0 * median_of(std::move(sizes));
   }
 
   double across_scale_mm() const {
@@ -228,12 +227,13 @@ class FootFit {
     return second.contour == contour_ ? subdivision_.reaching(second.foot.arc_mm) : std::vector<int>{};
   }
 
-  void add_stability(std::size_t z, const RigidMotion& cad_from_scan, NormalEquations& system) const {
+  void add_stability(std::size_t z, const RigidMotion& cad_from_scan, NormalEquations& system) {
     const double scale_mm = normal_scale_mm();
     const double weight = 1.0 / (sigma_normal_mm_ * sigma_normal_mm_);
-    for (const StabilityPoint& sp : stability_[z]) {
+    for (StabilityPoint& sp : stability_[z]) {
       const Eigen::Vector3d x = cad_from_scan * scan_.points_mm[sp.scan_index];
-      const SurfacePoint foot = cad_.surface.closest(x, 4.0 * scale_mm + scan_.spacing_mm);
+      const SurfacePoint foot = cad_.surface.closest(x, 4.0 * scale_mm + scan_.spacing_mm, sp.triangle);
+      sp.triangle = foot.triangle;
       if (foot.triangle < 0 || foot.on_border) continue;
       if (std::abs(foot.normal.dot(cad_from_scan.linear() * scan_.normals[sp.scan_index])) < kCosNormalsAgree)
         continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/geometry/median.hpp"
 #include "acquisition/geometry/parallel_for.hpp"
 #include "registration/normal_equations.hpp"
 #include "registration/surface_shape.hpp"
@@ -75,10 +76,7 @@ double residual_sigma_mm(const std::vector<SurfacePair>& pairs, double scale_mm)
   for (const SurfacePair& pair : pairs)
     if (pair.on_face && std::abs(pair.residual_mm) < 2.0 * scale_mm)
       sizes.push_back(std::abs(pair.residual_mm));
-  if (sizes.empty()) return 0.0;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return 1.4826 * *middle;
+  return 1.4826 * median_of(std::move(sizes));
 }
 
 void add_surface(const std::vector<SurfacePair>& pairs, std::size_t begin, std::size_t end, double sigma_mm,

@@ -14,6 +14,10 @@ namespace {
 
 constexpr double kAnneal = 0.6, kScaleSigmas = 4.0, kGateSigmas = 4.0;
 constexpr double kStartTauMm = 2.0, kTauShrink = 0.6;
+constexpr double kFollowedTaus = 0.3;  // a round that moves the edge by more has not followed it yet
+constexpr int kMostHeld = 8;           // rounds at one tau
+constexpr int kStrayPasses = 4;
+constexpr double kClaimsNearMm = 150.0;  // strays that hold one place of an edge together
 constexpr double kStrayRatio = 5e-3, kStrayRatioPerMm = 0.01, kMostStrayRatio = 0.05;  // grow with the gate
 constexpr double kFineCellRatio = 0.4,
                  kCellRatio = 0.6;  // of the node spacing: to place nodes; of the priors
@@ -59,9 +63,19 @@ class SurfaceFitter {
     }
     scale_mm_ = options_.start_scale_mm;
     tau_mm_ = std::max(kStartTauMm, 0.5 * scan_.spacing_mm);
+    settle();
+    for (int pass = 0; pass < kStrayPasses && fit_.usable() && call_strays(); ++pass) settle();
+    return std::move(fit_);
+  }
+
+ private:
+  /// Rounds until the field stands still at the finest scales. The edge sharpens only as the field follows:
+  /// else it is held where the first rounds found it.
+  void settle() {
     fit_.stop = "round limit";
+    int held = 0;
     for (int round = 0; round < options_.max_rounds; ++round) {
-      fit_.rounds = round + 1;
+      ++fit_.rounds;
       look();
       const double finest_tau_mm = strips_->finest_tau_mm(options_.edge_share_ratio);
       tau_mm_ = std::max(finest_tau_mm, tau_mm_);
@@ -71,20 +85,34 @@ class SurfaceFitter {
       const double moved_mm = step();
       if (!std::isfinite(moved_mm)) {
         fit_.reason = "the surface field did not stay finite";
-        return std::move(fit_);
+        return;
       }
       if (settled && moved_mm < settled_mm()) {
         fit_.stop = "converged";
-        break;
+        return;
       }
       scale_mm_ = std::max(kScaleSigmas * fit_.sigma_mm, kAnneal * scale_mm_);
+      if (moved_mm > kFollowedTaus * tau_mm_ && ++held < kMostHeld) continue;
+      held = 0;
       tau_mm_ = std::max(finest_tau_mm, kTauShrink * tau_mm_);
     }
-    finish();
-    return std::move(fit_);
   }
 
- private:
+  /// Covariance of the field as it stands, and of what it may owe to strays; true: some were, and are let go.
+  bool call_strays() {
+    look();
+    scale_mm_ = kScaleSigmas * fit_.sigma_mm;
+    const SurfaceSystem system = assemble();
+    const Eigen::Index n = system.gradient.size();
+    fit_.covariance =
+        Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>(system.information).solve(Eigen::MatrixXd::Identity(n, n));
+    const ClaimVerdict verdict = judge_claims(
+        system, fit_.covariance, strips_->claims(fit_.offset_mm, tau_mm_, stray_ratio()), kClaimsNearMm);
+    for (const std::size_t pair : verdict.strays) strips_->call_stray(pair);
+    fit_.covariance += verdict.doubt;
+    return !verdict.strays.empty();
+  }
+
   void make_basis() {
     double spacing_mm = options_.node_spacing_mm;
     const double band_mm = options_.role == ContourRole::kCut ? -1.0 : options_.band_mm;
@@ -126,13 +154,15 @@ class SurfaceFitter {
                         });
   }
 
+  double stray_ratio() const {
+    return std::min(kMostStrayRatio, kStrayRatio + kStrayRatioPerMm * kGateSigmas * fit_.sigma_mm);
+  }
+
   SurfaceSystem assemble() const {
-    const double stray_ratio =
-        std::min(kMostStrayRatio, kStrayRatio + kStrayRatioPerMm * kGateSigmas * fit_.sigma_mm);
     SurfaceSystem system =
         summed(pairs_.size(), [&](std::size_t begin, std::size_t end, SurfaceSystem& part) {
           add_surface(pairs_, begin, end, fit_.sigma_mm, scale_mm_, part);
-          strips_->add(begin, end, fit_.offset_mm, tau_mm_, stray_ratio, part);
+          strips_->add(begin, end, fit_.offset_mm, tau_mm_, stray_ratio(), part);
         });
     system += summed(sheet_.size(), [&](std::size_t begin, std::size_t end, SurfaceSystem& part) {
       for (std::size_t i = begin; i < end; ++i) sheet_[i].add(fit_.shift_mm, prior_, part);
@@ -187,24 +217,6 @@ class SurfaceFitter {
 
   double settled_mm() const {
     return std::max(kSettledMm, kSettledEdgeLimits / (50.0 * strips_->greatest_density_per_mm2()));
-  }
-
-  void finish() {
-    look();
-    scale_mm_ = kScaleSigmas * fit_.sigma_mm;
-    const SurfaceSystem system = assemble();
-    const Eigen::Index n = system.gradient.size();
-    fit_.covariance =
-        Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>(system.information).solve(Eigen::MatrixXd::Identity(n, n));
-    for (const SheetCell& cell : sheet_)
-      fit_.mean_strain_ratio += largest_strain(cell.mid_strain(fit_.shift_mm, prior_.thickness_mm)) /
-                                static_cast<double>(sheet_.size());
-  }
-
-  static double largest_strain(const Eigen::Vector3d& strain) {
-    const double middle = 0.5 * (strain[0] + strain[2]);
-    const double radius = std::hypot(0.5 * (strain[0] - strain[2]), strain[1]);
-    return std::max(std::abs(middle - radius), std::abs(middle + radius));
   }
 
   const CadModel& cad_;

@@ -42,7 +42,6 @@ struct SurfaceFit {
   std::vector<double> offset_mm;          ///< one an edge used: it lies this far inside the material
   Eigen::MatrixXd covariance;             ///< of the node shifts (3 each), then the offsets; mm^2
   double sigma_mm = 0.0;                  ///< robust residual normal to the surface
-  double mean_strain_ratio = 0.0;  ///< of the mid-surface: mean of its larger principal strain, absolute
   std::size_t pairs = 0;
   int rounds = 0;
   std::string stop;    ///< "converged", "round limit"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "registration/found_edge.hpp"
 #include "registration/surface_field.hpp"
 
 namespace arris {
@@ -18,22 +19,11 @@ constexpr std::size_t kUnseenBins = 8;
 
 /// Edge of a contour that is not there yet: seen nowhere.
 EdgeFit no_edge(const Curve& curve, const EdgeFitOptions& options) {
-  ArcSpline spline(curve.length_mm(), curve.closed(), options.knot_mm);
-  const Eigen::Index n = spline.size();
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
-  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(n, n);
-  return {spline,
-          zero,
-          zero,
-          zero,
-          none,
-          none,
-          none,
-          curve.length_mm() / kUnseenBins,
-          std::vector<char>(kUnseenBins, 0),
-          0.0,
-          0.0,
-          0};
+  EdgeFit none(ArcSpline(curve.length_mm(), curve.closed(), options.knot_mm));
+  none.bin_mm = curve.length_mm() / kUnseenBins;
+  none.seen.assign(kUnseenBins, 0);
+  none.row_gap_mm.assign(kUnseenBins, 0.0);
+  return none;
 }
 
 std::string text_of(const Eigen::Vector3d& direction) {
@@ -82,23 +72,29 @@ void judge_place(const CadModel& cad, const SurfaceField& field, const Registrat
   }
 }
 
-/// Where scan points near the carried contour decided, bin by bin.
-std::vector<SeenAlong> seen_along(const CadModel& cad, const ScanModel& scan, const SurfaceField& field,
-                                  const std::vector<ContourResult>& contours, ContourRole role) {
-  std::vector<SeenAlong> seen(cad.contours.size());
+/// Where the edge was seen, bin by bin; of a contour that is not there yet, where scan points are near.
+SeenAlong seen_along(const ScanModel& scan, const Curve& curve, const ContourResult& contour,
+                     ContourRole role) {
+  SeenAlong along;
   const double near_mm = kNearSpacings * scan.spacing_mm + kNearMm;
-  for (std::size_t c = 0; c < seen.size(); ++c)
-    for (double s_mm = 0.5 * SeenAlong::kBinMm; s_mm < cad.contours[c].length_mm();
-         s_mm += SeenAlong::kBinMm) {
-      if (role == ContourRole::kEdge) {
-        seen[c].bins.push_back(contours[c].edge.seen_at(s_mm) ? 1 : 0);
-        continue;
-      }
-      const Eigen::Vector3d p_mm = field.material_motion(c, s_mm) * cad.contours[c].point_mm(s_mm);
-      const Neighbour nearest = scan.tree.nearest(p_mm);
-      seen[c].bins.push_back(nearest.index >= 0 && nearest.distance2_mm2 < near_mm * near_mm ? 1 : 0);
+  for (double s_mm = 0.5 * SeenAlong::kBinMm; s_mm < curve.length_mm(); s_mm += SeenAlong::kBinMm) {
+    if (role == ContourRole::kEdge) {
+      along.bins.push_back(contour.edge.seen_at(s_mm) ? 1 : 0);
+      continue;
     }
-  return seen;
+    const Neighbour nearest = scan.tree.nearest(contour.motion.at(s_mm) * curve.point_mm(s_mm));
+    along.bins.push_back(nearest.index >= 0 && nearest.distance2_mm2 < near_mm * near_mm ? 1 : 0);
+  }
+  return along;
+}
+
+double seen_ratio(const std::vector<SeenAlong>& contours) {
+  double seen = 0.0, count = 1e-9;
+  for (const SeenAlong& along : contours) {
+    seen += static_cast<double>(std::count(along.bins.begin(), along.bins.end(), 1));
+    count += static_cast<double>(along.bins.size());
+  }
+  return seen / count;
 }
 
 }  // namespace
@@ -112,7 +108,6 @@ void deform_by_surface(const CadModel& cad, const ScanModel& scan, const Registr
     result.refusals.push_back(fit.reason);
     return;
   }
-  result.mean_strain_ratio = fit.mean_strain_ratio;
   auto field = std::make_shared<SurfaceField>(cad, std::move(fit), options.band_mm, options.role);
   std::vector<ContourMotion> motions;
   for (std::size_t c = 0; c < cad.contours.size(); ++c)
@@ -123,7 +118,11 @@ void deform_by_surface(const CadModel& cad, const ScanModel& scan, const Registr
   else
     for (std::size_t c = 0; c < motions.size(); ++c)
       result.contours.push_back({std::move(motions[c]), no_edge(cad.contours[c], options.edge)});
-  field->set_seen(seen_along(cad, scan, *field, result.contours, options.role));
+  std::vector<SeenAlong> seen;
+  for (std::size_t c = 0; c < cad.contours.size(); ++c)
+    seen.push_back(seen_along(scan, cad.contours[c], result.contours[c], options.role));
+  result.seen_ratio = seen_ratio(seen);
+  field->set_seen(std::move(seen));
   judge_place(cad, *field, options, result);
   result.field = std::move(field);
 }

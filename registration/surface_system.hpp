@@ -25,10 +25,17 @@ struct SurfaceSystem {
   /// Adds slope * J to the gradient and curvature * J'J to the information; for least squares slope = weight
   /// * residual, curvature = weight.
   void add(const Row& row, double slope, double curvature);
+  /// J x, and M J' of a symmetric matrix; they cost the row's nodes, not all unknowns.
+  [[nodiscard]] double dot(const Row& row, const Eigen::VectorXd& x) const;
+  [[nodiscard]] Eigen::VectorXd times(const Eigen::MatrixXd& symmetric, const Row& row) const;
   SurfaceSystem& operator+=(const SurfaceSystem& other) {
     information += other.information;
     gradient += other.gradient;
     return *this;
+  }
+
+  [[nodiscard]] Eigen::Index last(const Row& row) const {
+    return static_cast<Eigen::Index>(3 * nodes) + row.offset;
   }
 
   std::size_t nodes;

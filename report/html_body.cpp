@@ -163,6 +163,33 @@ std::string coordinates(const Eigen::Vector3d& p) {
   return mm(p.x(), 2) + ", " + mm(p.y(), 2) + ", " + mm(p.z(), 2);
 }
 
+std::string bending_text(const RunRecord::ProjectionSummary& p) {
+  if (!p.bending) return {};
+  return tag("p", "Contour " + std::to_string(p.contour) + ": bending radius " +
+                      mm(0.5 / p.bending->alpha_per_mm, 0) + " mm, about an axis through (" +
+                      coordinates(p.bending->axis_point_mm) +
+                      ") in the CAD frame, whose direction is known to " +
+                      mm(p.bending->axis_sd_rad * 180.0 / std::numbers::pi, 1) + "&deg;.");
+}
+
+std::string projection_table(const RunRecord& record) {
+  if (record.projection.empty()) return {};
+  std::string bendings, rows = number_row({"contour", "model", "points", "scatter, mm",
+                                           "height, rms / max, mm", "across, rms / max, mm"},
+                                          "th");
+  for (const auto& p : record.projection) {
+    rows += number_row({std::to_string(p.contour), escaped(p.model), std::to_string(p.points),
+                        mm(p.scatter_mm), mm(p.height_rms_mm) + " / " + mm(p.height_max_mm),
+                        mm(p.across_rms_mm) + " / " + mm(p.across_max_mm)});
+    bendings += bending_text(p);
+  }
+  return tag("h3", "Projection") +
+         tag("p",
+             "What the model leaves between itself and the scan. An edge that moved in the surface "
+             "(across) is not followed by a projection.") +
+         tag("div", tag("table", rows), "scroll") + bendings;
+}
+
 }  // namespace
 
 std::string deviation_section(const RunRecord& record) {
@@ -250,30 +277,6 @@ std::string worst_points_section(const RunRecord& record) {
   return html + tag("div", tag("table", rows), "scroll");
 }
 
-std::string bending_text(const RunRecord::ProjectionSummary& p) {
-  if (!p.bending) return "&ndash;";
-  return "radius " + mm(0.5 / p.bending->alpha_per_mm, 0) + " mm, axis through " +
-         coordinates(p.bending->axis_point_mm) + ", known to " +
-         mm(p.bending->axis_sd_rad * 180.0 / std::numbers::pi, 1) + "&deg;";
-}
-
-std::string projection_table(const RunRecord& record) {
-  if (record.projection.empty()) return {};
-  std::string rows = number_row({"contour", "model", "points", "scatter, mm", "height left, rms / max, mm",
-                                 "edge across, rms / max, mm", "bending, CAD frame"},
-                                "th");
-  for (const auto& p : record.projection)
-    rows += number_row(
-        {std::to_string(p.contour), escaped(p.model), std::to_string(p.points), mm(p.scatter_mm),
-         std::isfinite(p.height_rms_mm) ? mm(p.height_rms_mm) + " / " + mm(p.height_max_mm) : "&ndash;",
-         mm(p.across_rms_mm) + " / " + mm(p.across_max_mm), bending_text(p)});
-  return tag("h3", "Projection") +
-         tag("p",
-             "What the model leaves between itself and the scan. An edge that moved in the surface is "
-             "not followed by a projection.") +
-         tag("div", tag("table", rows), "scroll");
-}
-
 std::string refinement_tables(const RefinementSummary& summary) {
   if (!summary.asked) return {};
   std::string rounds = number_row(
@@ -298,7 +301,12 @@ std::string refinement_tables(const RefinementSummary& summary) {
   for (const auto& s : summary.seams)
     seams += number_row({std::to_string(s.contour), mm(s.arc_mm, 1), mm(s.jump_before_mm),
                          mm(s.jump_after_mm), mm(1e3 * s.turn_before_rad, 1), mm(1e3 * s.turn_after_rad, 1)});
-  return html + tag("div", tag("table", segments), "scroll") + tag("div", tag("table", seams), "scroll");
+  return html + tag("div", tag("table", segments), "scroll") +
+         tag("p",
+             "Residuals are distances to the edge as it was found before, across and normal to it. They may "
+             "grow: a segment gives up some of its own points where its neighbours contradict them. Then the "
+             "edge is found once more, and the path follows it.") +
+         tag("div", tag("table", seams), "scroll");
 }
 
 std::string registration_section(const RunRecord& record) {

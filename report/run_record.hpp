@@ -62,7 +62,10 @@ struct AlignmentSummary {
   std::string side_decided_by;   ///< "normals in the file", "seen_from", "initial pose", "shape"
   std::string start;             ///< "matching loops", "initial pose"
   std::vector<std::string> free_directions;  ///< motions the data leave undetermined, in words
-  std::vector<double> covariance_6x6;  ///< row-major, rotation (rad) then translation (mm); empty: unknown
+  std::vector<double>
+      covariance_6x6;  ///< row-major, of a small motion of the part about covariance_about_mm, CAD
+                       ///< axes: turn (rad), then shift (mm); empty: unknown
+  Eigen::Vector3d covariance_about_mm = Eigen::Vector3d::Zero();  ///< CAD frame
 };
 
 /// One judged result: the number, its limit, and the words.
@@ -142,7 +145,7 @@ struct RunRecord {
   ToolPath nominal_path;              ///< CAD frame
   Correction correction;              ///< scan frame local
   std::vector<std::string> refusals;  ///< all reasons of a refused run, correction.reasons included
-  double edge_limit_mm = 0.0;         ///< E = 1 / (density x 50 mm), across the contour
+  double edge_limit_mm = 0.0;         ///< E = 1 / (density x 50 mm), across the contour; NaN: role cut
   double surface_limit_mm = 0.0;      ///< sigma / sqrt(points within 10 mm)
 
   // The three results

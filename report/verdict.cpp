@@ -100,7 +100,7 @@ std::vector<std::string> next_steps(const RunRecord& record) {
   std::vector<std::string> steps;
   if (!record.accepted()) {
     steps.push_back("Do not run the robot on this part: no program was written.");
-    steps.push_back("Clear the first reason below, scan the part again and start the run again.");
+    steps.push_back("Clear the first reason given, scan the part again and start the run again.");
     steps.push_back("If it is refused a second time, call the process engineer and show this page.");
     return steps;
   }
@@ -131,7 +131,9 @@ std::vector<std::string> next_steps(const RunRecord& record) {
 
 std::string strain_text(const RunRecord& record) {
   const auto percent = [](double ratio) { return fixed_text(100.0 * ratio, 3) + " %"; };
-  const std::string limit = "; a scan this dense shows " + percent(record.strain_limit_ratio);
+  const std::string limit = record.strain_limit_ratio > 0.0
+                                ? "; a scan this dense shows " + percent(record.strain_limit_ratio)
+                                : "";
   if (!record.strain_at_mid)
     return percent(record.face_strain_ratio) +
            " on the scanned face, bending included (thickness not known)" + limit;

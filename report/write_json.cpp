@@ -82,6 +82,8 @@ Json alignment(const RunRecord& record) {
     Json rows = Json::array();
     for (const double value : a.covariance_6x6) rows.push_back(six_digits(value));
     json["covariance_6x6"] = rows;
+    const Eigen::Vector3d& about = a.covariance_about_mm;
+    json["covariance_about_mm"] = {number(about.x()), number(about.y()), number(about.z())};
   }
   return json;
 }

@@ -1,6 +1,7 @@
 #include "acquisition/geometry/polyline.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -10,6 +11,7 @@ namespace arris {
 namespace {
 
 constexpr int kLeafChords = 4;
+constexpr std::size_t kDeepestTree = 40;  // halves down from the most chords an int counts
 constexpr double kNoDistance = std::numeric_limits<double>::infinity();
 
 double box_distance2_mm2(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
@@ -115,9 +117,7 @@ Eigen::Vector3d Curve::normal(double arc_mm) const {
   return between.norm() > 1e-9 ? between.normalized() : start;
 }
 
-CurveFoot Curve::nearest(const Eigen::Vector3d& query_mm) const {
-  CurveFoot best;
-  double best_mm2 = kNoDistance;
+void Curve::search(const Eigen::Vector3d& query_mm, double& best_mm2, CurveFoot& best) const {
   const auto try_chord = [&](int i) {
     const Eigen::Vector3d& start_mm = contour_.points_mm[static_cast<std::size_t>(i)];
     const Eigen::Vector3d chord_mm = end_of(static_cast<std::size_t>(i)) - start_mm;
@@ -132,23 +132,47 @@ CurveFoot Curve::nearest(const Eigen::Vector3d& query_mm) const {
     best.ratio = ratio;
     best.foot_mm = foot_mm;
   };
-  // Nearer child first; a box as far as the best is still opened, so that the lower chord wins a tie.
-  const auto visit = [&](const auto& self, int id) -> void {
-    const Box& box = boxes_[static_cast<std::size_t>(id)];
-    if (box_distance2_mm2(box.low, box.high, query_mm) > best_mm2 * (1.0 + 1e-12)) return;
+  // Nearer child first; a box as far as the best is still opened, so that the lower chord wins a tie. A box's
+  // distance is worked out once, by its parent.
+  struct Open {
+    int box;
+    double distance_mm2;
+  };
+  std::array<Open, 2 * kDeepestTree> stack;
+  std::size_t open = 0;
+  stack[open++] = {0, 0.0};
+  while (open > 0) {
+    const Open at = stack[--open];
+    if (at.distance_mm2 > best_mm2 * (1.0 + 1e-12)) continue;
+    const Box& box = boxes_[static_cast<std::size_t>(at.box)];
     if (box.left < 0) {
       for (int i = box.first; i < box.last; ++i) try_chord(i);
-      return;
+      continue;
     }
     const Box& left = boxes_[static_cast<std::size_t>(box.left)];
     const Box& right = boxes_[static_cast<std::size_t>(box.right)];
-    const bool right_first =
-        box_distance2_mm2(right.low, right.high, query_mm) < box_distance2_mm2(left.low, left.high, query_mm);
-    self(self, right_first ? box.right : box.left);
-    self(self, right_first ? box.left : box.right);
-  };
-  visit(visit, 0);
+    const Open to_left{box.left, box_distance2_mm2(left.low, left.high, query_mm)};
+    const Open to_right{box.right, box_distance2_mm2(right.low, right.high, query_mm)};
+    const bool right_first = to_right.distance_mm2 < to_left.distance_mm2;
+    stack[open++] = right_first ? to_left : to_right;
+    stack[open++] = right_first ? to_right : to_left;
+  }
+}
+
+CurveFoot Curve::nearest(const Eigen::Vector3d& query_mm) const {
+  const CurveFoot best = nearest_within(query_mm, kNoDistance);
   if (best.segment < 0) throw Error(Fault::kBug, "Curve::nearest: the query is not finite");
+  return best;
+}
+
+CurveFoot Curve::nearest_within(const Eigen::Vector3d& query_mm, double reach_mm) const {
+  CurveFoot best;
+  double best_mm2 = reach_mm * reach_mm;
+  search(query_mm, best_mm2, best);
+  if (best.segment < 0) {
+    best.distance_mm = reach_mm;
+    return best;
+  }
   const auto segment = static_cast<std::size_t>(best.segment);
   best.distance_mm = std::sqrt(best_mm2);
   best.arc_mm = wrap_mm(arc_mm_[segment] + best.ratio * (arc_mm_[segment + 1] - arc_mm_[segment]));

@@ -38,6 +38,9 @@ class Curve {
   [[nodiscard]] Eigen::Vector3d normal(double arc_mm) const;
   /// Ties: the lower segment. Throws Error(kBug) for a query that is not finite.
   [[nodiscard]] CurveFoot nearest(const Eigen::Vector3d& query_mm) const;
+  /// The same foot if it lies nearer than reach_mm, else segment -1 and distance_mm = reach_mm; quicker, for
+  /// what lies farther is not looked at.
+  [[nodiscard]] CurveFoot nearest_within(const Eigen::Vector3d& query_mm, double reach_mm) const;
 
  private:
   struct Box {
@@ -49,6 +52,7 @@ class Curve {
     double ratio;
   };
   int build(int first, int last);
+  void search(const Eigen::Vector3d& query_mm, double& best_mm2, CurveFoot& best) const;
   [[nodiscard]] Locus locate(double arc_mm) const;
   [[nodiscard]] const Eigen::Vector3d& end_of(std::size_t segment) const;
 

@@ -190,21 +190,30 @@ struct Search {
   std::int32_t triangle = -1;
   Foot foot{};
 
+  /// Keeps the triangle if it is the nearest so far.
+  bool look_at(std::int32_t t) {
+    const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(t)];
+    const Foot candidate = nearest_on_triangle(
+        {mesh.vertices_mm[static_cast<std::size_t>(a)], mesh.vertices_mm[static_cast<std::size_t>(b)],
+         mesh.vertices_mm[static_cast<std::size_t>(c)]},
+        query_mm);
+    if (!(candidate.distance2_mm2 <= limit2_mm2)) return false;
+    if (candidate.distance2_mm2 == limit2_mm2 && triangle >= 0 && t > triangle) return false;
+    limit2_mm2 = candidate.distance2_mm2;
+    triangle = t;
+    foot = candidate;
+    return true;
+  }
+
+  /// Within which the tree may still hold a nearer triangle.
+  [[nodiscard]] float radius() const {
+    return float_above(std::sqrt(limit2_mm2) * (1.0 + kFloatSlackRatio) + slack_mm);
+  }
+
   static bool visit(RTCPointQueryFunctionArguments* args) {
     Search& search = *static_cast<Search*>(args->userPtr);
-    const std::int32_t t = search.triangle_of[args->primID];
-    const auto& [a, b, c] = search.mesh.triangles[static_cast<std::size_t>(t)];
-    const Foot foot = nearest_on_triangle({search.mesh.vertices_mm[static_cast<std::size_t>(a)],
-                                           search.mesh.vertices_mm[static_cast<std::size_t>(b)],
-                                           search.mesh.vertices_mm[static_cast<std::size_t>(c)]},
-                                          search.query_mm);
-    if (!(foot.distance2_mm2 <= search.limit2_mm2)) return false;
-    if (foot.distance2_mm2 == search.limit2_mm2 && search.triangle >= 0 && t > search.triangle) return false;
-    search.limit2_mm2 = foot.distance2_mm2;
-    search.triangle = t;
-    search.foot = foot;
-    const float radius =
-        float_above(std::sqrt(foot.distance2_mm2) * (1.0 + kFloatSlackRatio) + search.slack_mm);
+    if (!search.look_at(search.triangle_of[args->primID])) return false;
+    const float radius = search.radius();
     if (!(radius < args->query->radius)) return false;
     args->query->radius = radius;
     return true;
@@ -215,18 +224,20 @@ struct Search {
 
 SurfaceQuery::SurfaceQuery(const TriangleMesh& mesh) : impl_(std::make_shared<const Impl>(mesh)) {}
 
-SurfacePoint SurfaceQuery::closest(const Eigen::Vector3d& query_mm, double max_distance_mm) const {
+SurfacePoint SurfaceQuery::closest(const Eigen::Vector3d& query_mm, double max_distance_mm,
+                                   std::int32_t hint) const {
   const Impl& impl = *impl_;
   if (!impl.scene || !query_mm.allFinite() || !(max_distance_mm >= 0.0)) return {};
   const Eigen::Vector3d local_mm = query_mm - impl.centre_mm;
   const double slack_mm = kFloatSlackRatio * (local_mm.cwiseAbs().maxCoeff() + impl.half_extent_mm);
   Search search{impl.triangle_of, impl.mesh, query_mm, slack_mm, max_distance_mm * max_distance_mm};
+  if (hint >= 0) search.look_at(hint);
   RTCPointQuery query{};
   query.x = static_cast<float>(local_mm.x());
   query.y = static_cast<float>(local_mm.y());
   query.z = static_cast<float>(local_mm.z());
   query.time = 0.0F;
-  query.radius = float_above(max_distance_mm * (1.0 + kFloatSlackRatio) + slack_mm);
+  query.radius = search.radius();
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(impl.scene.get(), &query, &context, &Search::visit, &search);

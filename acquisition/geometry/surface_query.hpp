@@ -29,8 +29,10 @@ class SurfaceQuery {
   /// Copies the mesh. Build O(n log n). Throws Error(kBug) for indices out of range.
   explicit SurfaceQuery(const TriangleMesh& mesh);
 
-  /// Nearest point within max_distance_mm (triangle -1 if there is none).
-  [[nodiscard]] SurfacePoint closest(const Eigen::Vector3d& query_mm, double max_distance_mm = 1e30) const;
+  /// Nearest point within max_distance_mm (triangle -1 if there is none). `hint`: an earlier answer that is
+  /// likely near, of a point that has moved a little; it makes the search quicker and changes nothing.
+  [[nodiscard]] SurfacePoint closest(const Eigen::Vector3d& query_mm, double max_distance_mm = 1e30,
+                                     std::int32_t hint = -1) const;
 
  private:
   struct Impl;

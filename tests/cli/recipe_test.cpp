@@ -307,6 +307,9 @@ TEST(Recipe, ContradictionsAreProblems) {
       problem_of(kStarred + "[contour]\naccept = [1]\nreject = [1]\n").find("both accepted and rejected"),
       std::string::npos);
   EXPECT_NE(problem_of(kStarred + "[contour]\nstock_mm = 1\n").find("belongs to role"), std::string::npos);
+  const std::string joint = "[registration.subdivision]\nrefine = \"ceres\"\n";
+  EXPECT_NE(problem_of(kStarred + joint).find("belongs to method"), std::string::npos);
+  EXPECT_EQ(problem_of(kStarred + "[registration]\nmethod = \"subdivision\"\n" + joint), "");
   EXPECT_NE(problem_of(kStarred.substr(0, kStarred.size()) + "initial = {}\n").find("has no pose"),
             std::string::npos);
 }

@@ -75,6 +75,27 @@ TEST(Curve, NearestIsTheBruteForceAnswer) {
     }
 }
 
+TEST(Curve, NearestWithinIsTheSameFootOrNone) {
+  const Curve curve(random_contour(400, true, 3));
+  Random random(4);
+  int found = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Vector3d q_mm = random.in_cube_mm(60.0);
+    const CurveFoot any = curve.nearest(q_mm), near = curve.nearest_within(q_mm, 8.0);
+    if (any.distance_mm < 8.0) {
+      ++found;
+      EXPECT_EQ(near.segment, any.segment);
+      EXPECT_EQ(near.arc_mm, any.arc_mm);
+      EXPECT_EQ(near.distance_mm, any.distance_mm);
+    } else {
+      EXPECT_EQ(near.segment, -1);
+      EXPECT_EQ(near.distance_mm, 8.0);
+    }
+  }
+  EXPECT_GT(found, 100);
+  EXPECT_LT(found, 1990);
+}
+
 TEST(Curve, LengthIsTheContours) {
   for (const bool closed : {false, true})
     for (const int count : {2, 3, 40}) {

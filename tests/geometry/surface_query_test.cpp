@@ -209,6 +209,25 @@ TEST(SurfaceQuery, TiesGoToTheLowerTriangle) {
   EXPECT_EQ(once.closest(Eigen::Vector3d(0.0, 0.0, 20.0)).triangle, 2);  // on the diagonal of the top
 }
 
+TEST(SurfaceQuery, NoHintChangesTheAnswer) {
+  TriangleMesh twice = box_mesh(kHalf_mm);
+  twice.triangles.insert(twice.triangles.end(), twice.triangles.begin(), twice.triangles.end());
+  for (const TriangleMesh& mesh : {sphere_mesh(40.0, 3), triangle_soup(300, 4), twice}) {
+    const SurfaceQuery surface(mesh);
+    Random random(5);
+    for (int i = 0; i < 2000; ++i) {
+      const Eigen::Vector3d query_mm = random.in_cube_mm(60.0);
+      const double reach_mm = i % 2 == 0 ? 1e30 : 20.0;
+      const auto hint = static_cast<std::int32_t>(static_cast<std::size_t>(i) % mesh.triangles.size());
+      const SurfacePoint plain = surface.closest(query_mm, reach_mm);
+      const SurfacePoint hinted = surface.closest(query_mm, reach_mm, hint);
+      EXPECT_EQ(plain.triangle, hinted.triangle);
+      EXPECT_EQ(plain.foot_mm, hinted.foot_mm);
+      EXPECT_EQ(plain.signed_mm, hinted.signed_mm);
+    }
+  }
+}
+
 TEST(SurfaceQuery, SeesThroughTrianglesWithoutArea) {
   // A T-junction on a box edge, closed by a triangle without area, as CAD exports write them.
   TriangleMesh mesh = box_mesh(kHalf_mm);

@@ -6,6 +6,7 @@
 
 #include "registration/coarse_align.hpp"
 #include "registration/normal_equations.hpp"
+#include "registration/registration.hpp"
 #include "tests/registration/scenes.hpp"
 
 namespace arris {
@@ -288,6 +289,56 @@ TEST(RigidIcpOptions, RefusesValuesOutOfRange) {
   options.max_iterations = 5;
   options.stop_change_ratio = 0.0;
   EXPECT_THROW(options.check(), std::exception);
+}
+
+/// The small motion of the part, about `about_mm` in the CAD frame, that the found pose is off by.
+Eigen::Matrix<double, 6, 1> pose_error(const RigidMotion& true_pose, const RigidMotion& found,
+                                       const Eigen::Vector3d& about_mm) {
+  const RigidMotion error = true_pose.inverse() * found;  // of the part, CAD frame
+  const Eigen::AngleAxisd turn(error.linear());
+  Eigen::Matrix<double, 6, 1> out;
+  out << turn.angle() * turn.axis(), error * about_mm - about_mm;
+  return out;
+}
+
+TEST(RigidCovariance, StatesTheScatterOfThePoseOverManyScansOfAnUndeformedPart) {
+  synthetic::PlateShape shape = synthetic::asymmetric_plate();
+  shape.twist_rad_per_mm = shape.bend_curvature_per_mm = 0.0;
+  const synthetic::PlatePart part(shape);
+  const CadModel cad = scenes::cad_of(part);
+  const int runs = 40;
+  std::vector<Eigen::Matrix<double, 6, 1>> errors;
+  Eigen::Matrix<double, 6, 6> stated = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> mean = Eigen::Matrix<double, 6, 1>::Zero();
+  for (int run = 0; run < runs; ++run) {
+    Trial trial = scenes::trial_of(part, {}, 500 + static_cast<std::uint64_t>(run));
+    RegistrationOptions options;
+    options.coarse.initial_scan_from_cad = trial.scan_from_cad;
+    const Registration found = register_part(cad, trial.scan, options);
+    ASSERT_TRUE(found.usable()) << found.refusals.front();
+    errors.push_back(pose_error(trial.scan_from_cad, found.rigid.scan_from_cad, found.rigid.pivot_mm));
+    mean += errors.back() / runs;
+    stated += found.rigid.covariance / runs;
+  }
+  for (int i = 0; i < 6; ++i) {
+    double scatter2 = 0.0;
+    for (const auto& e : errors) scatter2 += std::pow(e[i] - mean[i], 2) / (runs - 1);
+    const double ratio = std::sqrt(stated(i, i) / scatter2);
+    EXPECT_GT(ratio, 0.5) << "direction " << i << ", true sd " << std::sqrt(scatter2);
+    EXPECT_LT(ratio, 2.0) << "direction " << i << ", true sd " << std::sqrt(scatter2);
+    RecordProperty("ratio_percent_" + std::to_string(i), static_cast<int>(100 * ratio));
+  }
+}
+
+TEST(RigidCovariance, OfAFreeTurnIsNoSmallNumber) {
+  const synthetic::PlatePart part(synthetic::plate_with_circle());
+  const CadModel cad = scenes::cad_of(part);
+  Trial trial = scenes::trial_of(part, {}, 3);
+  const Registration found = register_part(cad, trial.scan, {});
+  ASSERT_TRUE(found.usable());
+  ASSERT_EQ(found.free_directions.size(), 1u);
+  EXPECT_NEAR(found.rigid.covariance(2, 2), 1.0, 0.05);  // about z, rad^2
+  EXPECT_LT(std::sqrt(found.rigid.covariance(5, 5)), 0.1);
 }
 
 }  // namespace

@@ -104,6 +104,22 @@ TEST(WriteHtml, HoldsTheThreeResultsAndTheFlags) {
     EXPECT_TRUE(has(html, "<strong>" + point.id + "</strong>"));
 }
 
+TEST(WriteHtml, ProjectionTellsItsModelAndWhatItLeaves) {
+  RunRecord record = test::sample_record();
+  EXPECT_FALSE(has(write_html(record), "<h3>Projection</h3>"));
+  record.method = "projection";
+  record.projection.resize(1);
+  record.projection[0].model = "parabola";
+  record.projection[0].across_rms_mm = 0.321;
+  EXPECT_FALSE(has(write_html(record), "an axis through"));
+  record.projection[0].bending = {-4e-4, 1e-6, 0.01, {1.0, 2.0, 3.0}, {0.0, 1.0, 0.0}};
+  const std::string html = write_html(record);
+  EXPECT_EQ(fault_of(html), "");
+  for (const char* part :
+       {"<h3>Projection</h3>", "parabola", "0.321", "1250 mm, about an axis", "1.00, 2.00, 3.00"})
+    EXPECT_TRUE(has(html, part)) << part;
+}
+
 TEST(WriteHtml, RefusedRunsGiveReasonsAndNoPath) {
   const RunRecord record = test::refused_record();
   const std::string html = write_html(record);

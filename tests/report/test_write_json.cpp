@@ -40,6 +40,24 @@ TEST(WriteJson, ParsesAndHoldsWhatTheRunFound) {
   EXPECT_TRUE(result["program"]["written"].get<bool>());
 }
 
+TEST(WriteJson, ProjectionHasItsBendingOnlyWhereItIsKnown) {
+  RunRecord record = test::sample_record();
+  EXPECT_TRUE(json::parse(write_json(record))["registration"]["projection"].empty());
+  record.projection.resize(2);
+  record.projection[0].model = "spline";
+  record.projection[0].height_rms_mm = record.projection[0].height_max_mm = std::nan("");
+  record.projection[1].model = "parabola";
+  record.projection[1].height_rms_mm = 0.25;
+  record.projection[1].bending = {-4e-4, 1e-6, 0.01, {1.0, 2.0, 3.0}, {0.0, 1.0, 0.0}};
+  const json models = json::parse(write_json(record))["registration"]["projection"];
+  EXPECT_TRUE(models[0]["height_left_rms_mm"].is_null());
+  EXPECT_TRUE(models[0]["bending"].is_null());
+  EXPECT_NEAR(models[1]["height_left_rms_mm"].get<double>(), 0.25, 1e-9);
+  EXPECT_NEAR(models[1]["bending"]["radius_mm"].get<double>(), -1250.0, 1e-6);   // 1 / (2 alpha)
+  EXPECT_NEAR(models[1]["bending"]["radius_sd_mm"].get<double>(), 3.125, 1e-6);  // radius * sd / alpha
+  EXPECT_EQ(models[1]["bending"]["axis_point_cad_mm"][2], 3.0);
+}
+
 TEST(WriteJson, GapsAreNullAndNumbersRounded) {
   const json result = json::parse(write_json(test::sample_record()));
   const json& contour = result["contour_errors"]["contours"][0];

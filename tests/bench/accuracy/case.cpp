@@ -39,10 +39,10 @@ double points_near_edge(const synthetic::SyntheticScan& scan) {
 /// One scan with everything the rows of the table share.
 class Comparison {
  public:
-  Comparison(const BenchPart& part, const synthetic::SyntheticScan& scan)
-      : part_(part), cloud_(scan.cloud()) {
-    scan_.emplace(prepare(part, cloud_));
-    cad_from_local_ = scan.scan_from_cad.inverse() * Eigen::Translation3d(cloud_.offset_mm);
+  Comparison(const BenchPart& part, const synthetic::SyntheticScan& scan) : part_(part) {
+    const PointCloud cloud = scan.cloud();
+    scan_.emplace(prepare(part, cloud));
+    cad_from_local_ = scan.scan_from_cad.inverse() * Eigen::Translation3d(cloud.offset_mm);
     registration_ = register_part(part.cad, scan_->model, registration_options(part.recipe, part.threads));
   }
 
@@ -55,7 +55,6 @@ class Comparison {
       subdivisions();
     }
     whole();
-    whole_refined();
     return std::move(outcome_);
   }
 
@@ -134,41 +133,25 @@ class Comparison {
     RegistrationOptions supported = registration_options(part_.recipe, part_.threads);
     supported.method = RegistrationMethod::kSubdivision;
     put_chain(kSupported, supported);
-  }
-
-  PathError corrected(const Registration& registration, std::vector<std::string>& reasons) const {
-    reasons = registration.refusals;
-    const Correction correction = correct_path(part_, registration);
-    reasons.insert(reasons.end(), correction.reasons.begin(), correction.reasons.end());
-    Points path;
-    for (const CorrectedPoint& row : correction.points) path.push_back(row.point.tip_mm);
-    return error_of(path);
+    supported.refine = RefineMethod::kCeres;
+    put_chain(kRefined, supported);
   }
 
   void whole() {
     outcome_.reasons = registration_.refusals;
     if (!registration_.usable()) return;
-    const PathError error = corrected(registration_, outcome_.reasons);
+    const Correction correction = correct_path(part_, registration_);
+    outcome_.reasons.insert(outcome_.reasons.end(), correction.reasons.begin(), correction.reasons.end());
+    Points path;
+    for (const CorrectedPoint& row : correction.points) path.push_back(row.point.tip_mm);
+    const PathError error = error_of(path);
     if (outcome_.reasons.empty())
       outcome_.error[kWhole] = error;
     else
       outcome_.refused = error;
   }
 
-  void whole_refined() {
-    RegistrationOptions options = registration_options(part_.recipe, part_.threads);
-    options.method = RegistrationMethod::kSubdivision;
-    options.refine = RefineMethod::kCeres;
-    PreparedScan again = prepare(part_, cloud_);
-    const Registration refined = register_part(part_.cad, again.model, options);
-    std::vector<std::string> reasons;
-    if (!refined.usable()) return;
-    const PathError error = corrected(refined, reasons);
-    if (reasons.empty()) outcome_.error[kWholeRefined] = error;
-  }
-
   const BenchPart& part_;
-  PointCloud cloud_;
   std::optional<PreparedScan> scan_;
   RigidMotion cad_from_local_ = RigidMotion::Identity();  // the true pose, undone
   RigidMotion to_point_ = RigidMotion::Identity();

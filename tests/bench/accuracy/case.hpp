@@ -25,8 +25,8 @@ enum Method : std::size_t {
   kPaperNoSupport,  ///< the same without its stability points
   kPlain,           ///< our subdivision ICP on the edge points as extracted
   kSupported,       ///< our subdivision ICP on the edge by one-sided support; refused or not
+  kRefined,         ///< the same, all segments fitted together afterwards; refused or not
   kWhole,           ///< the whole method: what `arris run` writes
-  kWholeRefined,    ///< the same with refine = "ceres"
   kMethodCount
 };
 

@@ -38,7 +38,7 @@ const char* label(Method method) {
       return "our subdivision ICP, edge as extracted";
     case kSupported:
       return "our subdivision ICP, edge by support";
-    case kWholeRefined:
+    case kRefined:
       return "our subdivision ICP, edge by support, joint fit";
     default:
       return "**the whole method**";
@@ -153,7 +153,7 @@ std::string case_table(const CaseResult& result) {
       "rigid ICP | "
       "mean against best rigid | seeds |\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (const Method method : {kNominal, kBestRigid, kRigidIcp, kParabola, kHeightSpline, kPaper,
-                              kPaperNoSupport, kPlain, kSupported, kWholeRefined, kWhole})
+                              kPaperNoSupport, kPlain, kSupported, kRefined, kWhole})
     text += row_text(result, method);
   const std::string refused = refusal_lines(result);
   return text + (refused.empty() ? "" : "\n" + refused);

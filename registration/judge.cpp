@@ -1,0 +1,138 @@
+#include "registration/judge.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+
+#include "registration/seams.hpp"
+
+namespace arris {
+namespace {
+
+constexpr double kSeamMm = 2.5,
+                 kSeamEdgeLimits = 3.0;    // how far segments may disagree: bending, and the edge limit
+constexpr double kAcrossEdgeLimits = 2.0;  // an edge that seems to lie this far off may be the scan's grain
+constexpr double kResidualMm = 0.15, kResidualSigmas = 5.0;  // of the height beside the edge
+
+/// What two segments may disagree by at their cut, and an edge may lie off the middle between two rows along
+/// it.
+double seam_limit_mm(const EdgeFit& edge) {
+  return kSeamMm + kSeamEdgeLimits * edge.edge_limit_mm();
+}
+
+/// Longest run of bins that show no edge, or one that may lie anywhere between two rows of points; as arc
+/// lengths; wraps on a closed contour.
+struct Unseen {
+  double from_mm = 0.0, length_mm = 0.0, row_gap_mm = 0.0;
+};
+Unseen longest_unseen(const EdgeFit& edge, bool closed, double rows_limit_mm) {
+  Unseen longest;
+  const std::size_t n = edge.seen.size();
+  const auto shown = [&](std::size_t bin) { return edge.seen[bin] && edge.row_gap_mm[bin] < rows_limit_mm; };
+  for (std::size_t start = 0; start < n; ++start) {
+    if (shown(start) || (start > 0 && !shown(start - 1))) continue;
+    std::size_t run = 0;
+    double row_gap_mm = 0.0;
+    while (run < n && (closed || start + run < n) && !shown((start + run) % n))
+      row_gap_mm = std::max(row_gap_mm, edge.row_gap_mm[(start + run++) % n]);
+    if (static_cast<double>(run) * edge.bin_mm > longest.length_mm)
+      longest = {static_cast<double>(start) * edge.bin_mm, static_cast<double>(run) * edge.bin_mm,
+                 row_gap_mm < rows_limit_mm ? 0.0 : row_gap_mm};
+  }
+  return longest;
+}
+
+std::string rows_along_edge(double row_gap_mm) {
+  if (row_gap_mm == 0.0) return {};
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      ": rows of points %.1f mm apart run along it, and it lies anywhere between two; scan it with rows "
+      "across the edge",
+      row_gap_mm);
+  return text;
+}
+
+}  // namespace
+
+void judge_coverage(const CadModel& cad, const RegistrationOptions& options, Registration& result) {
+  for (std::size_t c = 0; c < result.contours.size(); ++c) {
+    const EdgeFit& edge = result.contours[c].edge;
+    const int id = cad.contours[c].contour().id;
+    char text[200];
+    if (edge.seen_ratio() < options.min_seen_ratio) {
+      std::snprintf(text, sizeof text, "contour %d: the scan shows %.0f %% of the edge, %.0f %% needed", id,
+                    100.0 * edge.seen_ratio(), 100.0 * options.min_seen_ratio);
+      result.refusals.emplace_back(text);
+    }
+    // The surface field ties such a stretch to the rest of the contour, and knows how well.
+    const double rows_limit_mm = options.method == RegistrationMethod::kSurface
+                                     ? std::numeric_limits<double>::infinity()
+                                     : 2.0 * seam_limit_mm(edge);
+    const Unseen gap = longest_unseen(edge, cad.contours[c].closed(), rows_limit_mm);
+    if (gap.length_mm > options.max_unseen_mm) {
+      std::snprintf(text, sizeof text, "contour %d not seen from s = %.0f to %.0f mm (%.0f mm, at most %.0f)",
+                    id, gap.from_mm, gap.from_mm + gap.length_mm, gap.length_mm, options.max_unseen_mm);
+      result.refusals.push_back(text + rows_along_edge(gap.row_gap_mm));
+    }
+  }
+}
+
+void judge_seams(const CadModel& cad, Registration& result) {
+  for (std::size_t c = 0; c < result.contours.size(); ++c) {
+    const ContourMotion& motion = result.contours[c].motion;
+    const double limit_mm = seam_limit_mm(result.contours[c].edge);
+    for (const Seam& seam : seams_of(motion)) {
+      if (seam.jump_mm < limit_mm) continue;
+      char text[200];
+      std::snprintf(
+          text, sizeof text,
+          "contour %d: the segments on both sides of s = %.0f mm disagree by %.1f mm (at most %.1f)",
+          cad.contours[c].contour().id, seam.arc_mm, seam.jump_mm, limit_mm);
+      result.refusals.emplace_back(text);
+    }
+  }
+}
+
+void judge_residuals(const CadModel& cad, const ScanModel& scan, Registration& result) {
+  for (std::size_t c = 0; c < result.contours.size(); ++c) {
+    const double limit_mm = kResidualMm + kResidualSigmas * scan.noise_sigma_mm;
+    if (result.contours[c].edge.residual_sigma_mm < limit_mm) continue;
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "contour %d: the surface beside the edge is not explained: residual %.2f mm, scanner noise %.2f mm",
+        cad.contours[c].contour().id, result.contours[c].edge.residual_sigma_mm, scan.noise_sigma_mm);
+    result.refusals.emplace_back(text);
+  }
+}
+
+void judge_projection(const CadModel& cad, const ProjectionOptions& options, Registration& result) {
+  for (std::size_t c = 0; c < result.projection.size(); ++c) {
+    const ContourProjection& found = result.projection[c];
+    const std::string contour = "contour " + std::to_string(cad.contours[c].contour().id) + ": ";
+    const std::string model = word_of(options.kind);
+    if (!found.fit.usable()) {
+      result.refusals.push_back(contour + "no " + model + " can be fitted: " + found.fit.reason);
+      continue;
+    }
+    char text[300];
+    if (found.residual.height_rms_mm > options.max_residual_mm) {
+      std::snprintf(text, sizeof text,
+                    "the surface beside it is not bent as a %s: %.2f mm rms left (at most %.2f); "
+                    "registration.projection.model = \"spline\" or method = \"subdivision\" can follow it",
+                    model.c_str(), found.residual.height_rms_mm, options.max_residual_mm);
+      result.refusals.push_back(contour + text);
+    }
+    const double limit_mm = options.max_residual_mm + kAcrossEdgeLimits * found.edge.edge_limit_mm();
+    if (found.residual.across_rms_mm > limit_mm) {
+      std::snprintf(text, sizeof text,
+                    "the edge has moved in the surface, which no projection follows: %.2f mm rms (at most "
+                    "%.2f); method = \"subdivision\" does",
+                    found.residual.across_rms_mm, limit_mm);
+      result.refusals.push_back(contour + text);
+    }
+  }
+}
+
+}  // namespace arris

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "registration/registration.hpp"
+
+namespace arris {
+
+/// Each adds to result.refusals, in plain words, why the result is not to be trusted.
+
+/// Contours of which the scan shows too little, or on too long a stretch none, or only rows along the edge.
+void judge_coverage(const CadModel& cad, const RegistrationOptions& options, Registration& result);
+
+/// Where two neighbouring segments disagree about the place of their common cut, one of them is wrong.
+void judge_seams(const CadModel& cad, Registration& result);
+
+/// Heights beside the edge that scatter far more than the scanner's noise are not explained by the field.
+void judge_residuals(const CadModel& cad, const ScanModel& scan, Registration& result);
+
+/// What a projection leaves beyond its limit, on the surface and in it. Across the edge it is also allowed
+/// what a scan of this density cannot show.
+void judge_projection(const CadModel& cad, const ProjectionOptions& options, Registration& result);
+
+}  // namespace arris
