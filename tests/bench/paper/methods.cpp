@@ -94,7 +94,14 @@ std::vector<Method> projections() {
 }
 
 std::vector<Method> joint_fits() {
-  return {};
+  return {chain("subdivision, refined",
+                [](const ScanTrial&, RegistrationOptions& options) {
+                  options.method = RegistrationMethod::kSubdivision;
+                  options.refine = RefineMethod::kCeres;
+                }),
+          chain("surface field", [](const ScanTrial&, RegistrationOptions& options) {
+            options.method = RegistrationMethod::kSurface;
+          })};
 }
 
 std::vector<Method> all_methods() {
@@ -103,9 +110,6 @@ std::vector<Method> all_methods() {
   methods.push_back(paper_subdivision());
   methods.push_back(subdivision());
   for (Method& method : joint_fits()) methods.push_back(std::move(method));
-  methods.push_back(chain("surface field", [](const ScanTrial&, RegistrationOptions& options) {
-    options.method = RegistrationMethod::kSurface;
-  }));
   return methods;
 }
 

@@ -26,7 +26,7 @@ struct Method {
 /// The whole chain with method `subdivision`; also on so many equal pieces.
 [[nodiscard]] Method subdivision();
 [[nodiscard]] Method subdivision_pieces(int pieces);
-/// Methods with a model of the bending or a joint fit, whole chains as well.
+/// Methods with a model of the bending, and those that fit everything together; whole chains as well.
 [[nodiscard]] std::vector<Method> projections();
 [[nodiscard]] std::vector<Method> joint_fits();
 

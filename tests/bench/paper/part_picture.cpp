@@ -1,6 +1,7 @@
 #include "tests/bench/paper/part_picture.hpp"
 
 #include "report/scene.hpp"
+#include "tests/bench/paper/plot.hpp"
 
 namespace arris::bench {
 namespace {
@@ -83,7 +84,9 @@ std::string part_png(const PartPicture& picture) {
   inner.centre_px -= Eigen::Vector2d(layout.panel.x, layout.panel.y);
   const ColourMap map = colour_map_for(picture.value_mm, 0.0);
 
-  Canvas canvas(kPictureWidth, layout.height_px, kPaper);
+  const std::vector<LegendItem> legend = legend_of(picture);
+  const int more_rows = static_cast<int>((legend.size() + kLegendItemsARow - 1) / kLegendItemsARow) - 1;
+  Canvas canvas(kPictureWidth, layout.height_px + more_rows * kLegendRowPx, kPaper);
   draw_title(canvas, picture.title, picture.subtitle);
   canvas.raster(rendered(picture, inner, layout.panel, map), layout.panel.x, layout.panel.y);
   canvas.clip(layout.panel);
@@ -94,7 +97,7 @@ std::string part_png(const PartPicture& picture) {
   (void)draw_axes(canvas, view, layout.panel);
   draw_panel_frame(canvas, layout.panel);
   if (has_scale) draw_colour_bar(canvas, map, layout.side);
-  draw_legend(canvas, legend_of(picture), kMargin, layout.legend_y, kPictureWidth - 2.0 * kMargin);
+  draw_legend_rows(canvas, legend, layout.legend_y);
   return canvas.png();
 }
 

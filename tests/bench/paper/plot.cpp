@@ -16,7 +16,6 @@ using report::Canvas;
 using report::Rgb;
 
 constexpr int kHeight = 810;
-constexpr std::size_t kLegendItemsARow = 4;
 constexpr double kWantedTicks = 8.0;
 constexpr Rgb kGrid{225, 229, 233}, kGap{238, 238, 238};
 const Box kPanel{110.0, 100.0, report::kPictureWidth - 140.0, 540.0};
@@ -86,6 +85,15 @@ Rgb line_colour(std::size_t i) {
   return kColours[i % std::size(kColours)];
 }
 
+void draw_legend_rows(report::Canvas& canvas, const std::vector<report::LegendItem>& items, double y) {
+  for (std::size_t i = 0; i < items.size(); i += kLegendItemsARow, y += kLegendRowPx) {
+    const auto from = items.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto count = static_cast<std::ptrdiff_t>(std::min(kLegendItemsARow, items.size() - i));
+    report::draw_legend(canvas, {from, from + count}, report::kMargin, y,
+                        report::kPictureWidth - 2.0 * report::kMargin);
+  }
+}
+
 std::string plot_png(const Plot& plot) {
   Canvas canvas(report::kPictureWidth, kHeight, report::kPaper);
   report::draw_title(canvas, plot.title, plot.subtitle);
@@ -103,13 +111,7 @@ std::string plot_png(const Plot& plot) {
     legend.push_back(item);
   }
   report::draw_panel_frame(canvas, kPanel);
-  double y = kPanel.y + kPanel.height + 112.0;
-  for (std::size_t i = 0; i < legend.size(); i += kLegendItemsARow, y += 36.0) {
-    const auto from = legend.begin() + static_cast<std::ptrdiff_t>(i);
-    const auto count = static_cast<std::ptrdiff_t>(std::min(kLegendItemsARow, legend.size() - i));
-    report::draw_legend(canvas, {from, from + count}, report::kMargin, y,
-                        report::kPictureWidth - 2.0 * report::kMargin);
-  }
+  draw_legend_rows(canvas, legend, kPanel.y + kPanel.height + 112.0);
   return canvas.png();
 }
 

@@ -5,12 +5,17 @@
 #include <utility>
 #include <vector>
 
-#include "report/canvas.hpp"
+#include "report/picture_parts.hpp"
 
 namespace arris::bench {
 
 /// Colour of line i of a figure: the same method has the same colour in all of them.
 [[nodiscard]] report::Rgb line_colour(std::size_t i);
+
+/// A legend that goes on below when a row is full.
+inline constexpr std::size_t kLegendItemsARow = 4;
+inline constexpr int kLegendRowPx = 36;
+void draw_legend_rows(report::Canvas& canvas, const std::vector<report::LegendItem>& items, double y);
 
 struct PlotLine {
   std::string name;

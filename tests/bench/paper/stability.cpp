@@ -7,41 +7,46 @@ namespace {
 
 constexpr double kGaps[] = {0.0, 0.1, 0.2};
 
-std::string word_of(StabilityPoints stability) {
-  if (stability == StabilityPoints::kNone) return "none";
-  return stability == StabilityPoints::kPaper ? "the paper's" : "local";
+/// Each matching has stability points of its own kind: the paper's are all in every segment and matched once,
+/// those of matching by feet are near their segment and matched again each round.
+std::string name_of(const std::string& matching, SegmentMatch match, bool has_points) {
+  if (!has_points) return matching + ", none";
+  return matching + (match == SegmentMatch::kPaper ? ", the paper's" : ", local");
 }
 
-/// The paper's segments, or ours as one stage, with the stability points of `stability`.
-Method stage(SegmentMatch match, StabilityPoints stability) {
+StabilityPoints kind_of(SegmentMatch match, bool has_points) {
+  if (!has_points) return StabilityPoints::kNone;
+  return match == SegmentMatch::kPaper ? StabilityPoints::kPaper : StabilityPoints::kLocal;
+}
+
+/// Subdivision ICP as one stage, on the edge points as extracted.
+Method stage(SegmentMatch match, bool has_points) {
   const bool is_paper = match == SegmentMatch::kPaper;
-  return {(is_paper ? "the paper's matching, " : "ours by feet, ") + word_of(stability),
+  return {name_of(is_paper ? "the paper's matching" : "matching by feet", match, has_points),
           [=](ScanTrial& trial) -> std::optional<CarriedPath> {
             SubdivisionIcpOptions options = paper_options(trial);
             options.match = match;
-            options.stability = stability;
+            options.stability = kind_of(match, has_points);
             const RigidMotion start = is_paper ? trial.paper_rigid() : trial.rigid().rigid.scan_from_cad;
             return trial.carried(
                 subdivision_icp(trial.part().cad, trial.model(), trial.raw_edge(), start, options).front());
           }};
 }
 
-Method whole(StabilityPoints stability) {
-  return {"the whole chain, " + word_of(stability), [=](ScanTrial& trial) {
+Method whole(bool has_points) {
+  return {name_of("the whole chain", SegmentMatch::kFoot, has_points), [=](ScanTrial& trial) {
             RegistrationOptions options = trial.options();
             options.method = RegistrationMethod::kSubdivision;
-            options.subdivision.stability = stability;
+            options.subdivision.stability = kind_of(SegmentMatch::kFoot, has_points);
             return trial.chain(options);
           }};
 }
 
 std::vector<Method> methods() {
   std::vector<Method> list;
-  constexpr StabilityPoints kKinds[] = {StabilityPoints::kNone, StabilityPoints::kPaper,
-                                        StabilityPoints::kLocal};
   for (const SegmentMatch match : {SegmentMatch::kPaper, SegmentMatch::kFoot})
-    for (const StabilityPoints kind : kKinds) list.push_back(stage(match, kind));
-  for (const StabilityPoints kind : kKinds) list.push_back(whole(kind));
+    for (const bool has_points : {false, true}) list.push_back(stage(match, has_points));
+  for (const bool has_points : {false, true}) list.push_back(whole(has_points));
   return list;
 }
 

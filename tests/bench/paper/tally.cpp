@@ -28,23 +28,23 @@ std::string percent(double ratio) {
 
 std::string row_of(const Tally& tally, const Tally& base) {
   if (tally.errors.empty())
-    return fmt::format("| {} | - | - | - | - | - | - | no result: {} |\n", tally.method,
-                       tally.without_result);
+    return fmt::format("| {} | - | - | - | - | - | - | {} of {} |\n", tally.method, tally.refused(),
+                       tally.seeds);
   const double mean_mm = tally.mean_mm(&PathError::mean_mm), max_mm = tally.mean_mm(&PathError::max_mm);
-  return fmt::format(
-      "| {} | {:.3f} ({:.3f}) | {:.3f} ({:.3f}) | {:.3f} | {:.3f} | {} | {} | {} of {} |\n", tally.method,
-      mean_mm, tally.worst_mm(&PathError::mean_mm), max_mm, tally.worst_mm(&PathError::max_mm),
-      tally.mean_mm(&PathError::normal_mm), tally.mean_mm(&PathError::across_mm),
-      percent(mean_mm / base.mean_mm(&PathError::mean_mm)),
-      percent(max_mm / base.mean_mm(&PathError::max_mm)), tally.refused() + tally.without_result,
-      static_cast<int>(tally.errors.size()) + tally.without_result);
+  return fmt::format("| {} | {:.3f} ({:.3f}) | {:.3f} ({:.3f}) | {:.3f} | {:.3f} | {} | {} | {} of {} |\n",
+                     tally.method, mean_mm, tally.worst_mm(&PathError::mean_mm), max_mm,
+                     tally.worst_mm(&PathError::max_mm), tally.mean_mm(&PathError::normal_mm),
+                     tally.mean_mm(&PathError::across_mm),
+                     percent(mean_mm / base.mean_mm(&PathError::mean_mm)),
+                     percent(max_mm / base.mean_mm(&PathError::max_mm)), tally.refused(), tally.seeds);
 }
 
 }  // namespace
 
 int Tally::refused() const {
   int count = 0;
-  for (const auto& [reason, seeds] : refusals) count += seeds;
+  for (const auto* counted : {&refusals, &failures})
+    for (const auto& [reason, seeds] : *counted) count += seeds;
   return count;
 }
 
@@ -70,8 +70,11 @@ std::vector<Tally> compare(const BenchPart& part, const synthetic::ScanOptions& 
     for (std::size_t m = 0; m < methods.size(); ++m) {
       const std::optional<CarriedPath> path =
           trial.has_pose() ? methods[m].carry(trial) : std::optional<CarriedPath>();
+      ++tallies[m].seeds;
       if (!path) {
-        ++tallies[m].without_result;
+        const Registration& rigid = trial.rigid();
+        const std::string why = rigid.coarse.usable() ? rigid.rigid.reason : rigid.coarse.reason;
+        ++tallies[m].failures[why.empty() ? "no field" : without_numbers(why)];
         continue;
       }
       tallies[m].errors.push_back(part.truth.error(part.path_mm, path->tips_mm));
@@ -86,8 +89,8 @@ std::string refusal_list(const std::vector<Tally>& tallies) {
   for (const Tally& tally : tallies) {
     for (const auto& [reason, seeds] : tally.refusals)
       text += fmt::format("- {}: refused {} times: {}\n", tally.method, seeds, reason);
-    if (tally.without_result > 0)
-      text += fmt::format("- {}: no result {} times\n", tally.method, tally.without_result);
+    for (const auto& [reason, seeds] : tally.failures)
+      text += fmt::format("- {}: no path {} times: {}\n", tally.method, seeds, reason);
   }
   return text;
 }
@@ -108,7 +111,7 @@ std::string short_cell(const Tally& tally) {
   if (tally.errors.empty()) return "no result";
   std::string text =
       fmt::format("{:.3f} / {:.3f}", tally.mean_mm(&PathError::mean_mm), tally.mean_mm(&PathError::max_mm));
-  const int refused = tally.refused() + tally.without_result;
+  const int refused = tally.refused();
   return refused == 0 ? text : text + fmt::format(", {} refused", refused);
 }
 

@@ -11,10 +11,11 @@ namespace arris::bench {
 /// Errors of one method over the seeds of one scan.
 struct Tally {
   std::string method;
+  int seeds = 0;
   std::vector<PathError> errors;        ///< one a seed with a path, refused or not
   std::map<std::string, int> refusals;  ///< reason -> seeds that it was the first reason of
-  int without_result = 0;
-  [[nodiscard]] int refused() const;
+  std::map<std::string, int> failures;  ///< the same of seeds without any path
+  [[nodiscard]] int refused() const;    ///< failures included
   [[nodiscard]] double mean_mm(double PathError::*member) const;
   [[nodiscard]] double worst_mm(double PathError::*member) const;
 };
