@@ -51,7 +51,8 @@ void print_summary(const RunRecord& record, const std::filesystem::path& folder,
     console::print(line("found edge   mean %.3f mm, max %.3f mm from the nominal placed rigidly",
                         errors.rigid.mean_mm, errors.rigid.max_mm));
     console::print(
-        line("             mean %.3f mm, max %.3f mm after %s; a scan this dense shows an edge to %.3f mm",
+        line("             mean %.3f mm, max %.3f mm with its bending followed (%s); a scan this dense shows "
+             "an edge to %.3f mm",
              errors.after.mean_mm, errors.after.max_mm, record.method.c_str(), record.edge_limit_mm));
   }
   if (record.accepted() && record.method != "rigid")

@@ -106,7 +106,7 @@ std::vector<std::string> limits_broken(const ToolPath& nominal, const Correction
   std::vector<std::string> reasons = list_rows(
       nominal, [&](std::size_t i) { return over(correction.points[i].shift_mm, options.max_correction_mm); },
       [&](double worst_mm) {
-        return "shift " + fixed_text(worst_mm, 1) + " mm, limit " + fixed_text(options.max_correction_mm, 1) +
+        return "shift " + fixed_text(worst_mm, 2) + " mm, limit " + fixed_text(options.max_correction_mm, 2) +
                " mm";
       });
   append(

@@ -28,7 +28,7 @@ TEST(Limits, AShiftOverTheLimitIsRefusedWithItsRowsAndNeverClipped) {
   const AnyField hump = lifted([](double x_mm) { return std::max(0.0, 23.1 - 0.003 * x_mm * x_mm); });
   const Correction correction = correct(straight_path(), SurfaceQuery(plate_mesh()), hump, kHome, {});
   ASSERT_EQ(correction.reasons.size(), 1u);
-  EXPECT_EQ(correction.reasons[0], "rows 35 to 67 (s = 68.0 to 132.0 mm): shift 23.1 mm, limit 20.0 mm");
+  EXPECT_EQ(correction.reasons[0], "rows 35 to 67 (s = 68.0 to 132.0 mm): shift 23.10 mm, limit 20.00 mm");
   EXPECT_FALSE(correction.accepted());
   EXPECT_NEAR(correction.points[50].shift_mm, 23.1, 1e-12);
 }
