@@ -1,4 +1,5 @@
 // The pictures of docs/operator.md and docs/process-engineer.md: roles, sides, the three results, the frames.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +12,7 @@ namespace {
 
 using namespace arris::draw;  // NOLINT: one small program
 using arris::report::Anchor;
+using arris::report::Box;
 using arris::report::Canvas;
 using arris::report::TextStyle;
 
@@ -44,7 +46,7 @@ constexpr double kPlanLeftPx = 30.0, kPlanRightPx = 430.0, kPlanBottomPx = 290.0
 
 /// Scan points from an edge down to the picture's border, in rows that no eye takes for the edge.
 void scan_points(Sketch& sketch, const Curve& edge_px, const Vector2d& hole_px, double hole_radius_px) {
-  const arris::report::Box label{hole_px.x() - 140.0, hole_px.y() - 14.0, 140.0, 28.0};
+  const Box label{hole_px.x() - 140.0, hole_px.y() - 14.0, 140.0, 28.0};
   for (int row = 0; row < 14; ++row)
     for (int column = 0; column < 25; ++column) {
       const Vector2d p(kPlanLeftPx + 8.0 + 16.0 * column + 5.0 * (row % 3),
@@ -335,7 +337,7 @@ void hand_scanner(Sketch sketch) {
   }
   chain(sketch, "solved each time");
   sketch.arrow(kBasePx + Vector2d(14, -4), spheres_px[0] + Vector2d(-13, 3), kInk);
-  sketch.text({88, 290}, "known places", kWords);
+  sketch.text({89, 353}, "known places", {.size_px = 16, .colour = kInk});
 }
 
 void cell(Canvas& canvas) {
@@ -344,6 +346,90 @@ void cell(Canvas& canvas) {
   Sketch below(canvas, 0, 0);
   below.line({30, 418}, {890, 418}, kMaterial, 2.0);
   below.text({30, 450}, "robot_from_scan * scan_from_cad takes a point of the drawing to the robot.", kWords);
+}
+
+// ----------------------------------------------------------------------------------------------- scan.png
+
+const Box kPlateBox{30, 60, 400, 230}, kOpeningBox{100, 112, 190, 126};
+const Vector2d kLargeHolePx(360, 236), kSmallHolePx(376, 118);
+constexpr double kLargeHoleRadiusPx = 27.0, kSmallHoleRadiusPx = 16.0, kCornerPx = 36.0;
+
+/// Distance from the rim of the opening: positive on the material.
+double from_opening_px(const Vector2d& p) {
+  const Vector2d middle(kOpeningBox.x + 0.5 * kOpeningBox.width, kOpeningBox.y + 0.5 * kOpeningBox.height);
+  const Vector2d half(0.5 * kOpeningBox.width - kCornerPx, 0.5 * kOpeningBox.height - kCornerPx);
+  const Vector2d out = (p - middle).cwiseAbs() - half;
+  return out.cwiseMax(0.0).norm() + std::min(out.maxCoeff(), 0.0) - kCornerPx;
+}
+
+void plate(Sketch& sketch) {
+  sketch.box(kPlateBox, kMaterial);
+  sketch.rounded(kOpeningBox, kCornerPx, kWhite, kScan, 1.0);
+  sketch.ring(kLargeHolePx, kLargeHoleRadiusPx, kScan, kWhite, 1.0);
+  sketch.ring(kSmallHolePx, kSmallHoleRadiusPx, kScan, kWhite, 1.0);
+}
+
+bool on_plate(const Vector2d& p) {
+  return from_opening_px(p) > 3.0 && (p - kLargeHolePx).norm() > kLargeHoleRadiusPx + 3.0 &&
+         (p - kSmallHolePx).norm() > kSmallHoleRadiusPx + 3.0;
+}
+
+void scan_where(Sketch& sketch, const std::function<bool(const Vector2d&)>& is_seen) {
+  for (int row = 0; row < 23; ++row)
+    for (int column = 0; column < 40; ++column) {
+      const Vector2d p(35.0 + 10.0 * column + 3.0 * (row % 3 - 1),
+                       65.0 + 10.0 * row + 2.0 * (column % 3 - 1));
+      if (kPlateBox.holds(p) && on_plate(p) && is_seen(p)) sketch.dot(p, 1.6, kScan);
+    }
+}
+
+void flag(Sketch& sketch, const Vector2d& at_px, const std::string& number, const Rgb& colour) {
+  sketch.ring(at_px, 12.0, colour, kWhite, 2.5);
+  sketch.text(at_px + Vector2d(0, 6), number,
+              {.size_px = 17, .bold = true, .colour = colour, .anchor = Anchor::kCentre});
+}
+
+void below_scan(Sketch& sketch, const std::array<std::string, 3>& lines, const Rgb& colour) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const double y = 324.0 + 34.0 * static_cast<double>(i);
+    flag(sketch, {42, y - 6.0}, std::to_string(i + 1), colour);
+    sketch.text({66, y}, lines[i], kWords);
+  }
+}
+
+void good_scan(Sketch sketch) {
+  sketch.text({30, 36}, "scan it so", kTitle);
+  plate(sketch);
+  scan_where(sketch, [](const Vector2d&) { return true; });
+  sketch.rounded(kOpeningBox, kCornerPx, kWhite, kDrawn, 4.0);
+  flag(sketch, {195, 112}, "1", kDrawn);
+  flag(sketch, {334, 190}, "2", kDrawn);
+  flag(sketch, {66, 262}, "3", kDrawn);
+  below_scan(sketch,
+             {"the whole edge, all round", "holes or a corner: they tell which way round",
+              "the face beside the edge, 60 mm or more"},
+             kDrawn);
+}
+
+void bad_scan(Sketch sketch) {
+  sketch.text({30, 36}, "not so", kTitle);
+  plate(sketch);
+  const Vector2d gap_px(272, 226);
+  scan_where(sketch,
+             [&](const Vector2d& p) { return from_opening_px(p) < 32.0 && (p - gap_px).norm() > 62.0; });
+  sketch.box({130, 92, 52, 34}, kInk);
+  flag(sketch, {262, 206}, "1", kPath);
+  flag(sketch, {372, 178}, "2", kPath);
+  flag(sketch, {156, 109}, "3", kPath);
+  below_scan(sketch,
+             {"a stretch of the edge without points", "no hole, no corner: two ways to lay it",
+              "a clamp, chips or dust over the edge"},
+             kPath);
+}
+
+void scan(Canvas& canvas) {
+  good_scan({canvas, 0, 0});
+  bad_scan({canvas, kHalfPx, 0});
 }
 
 struct Picture {
@@ -361,7 +447,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   for (const Picture& picture : {Picture{"roles.png", 400, roles}, Picture{"sides.png", 490, sides},
-                                 Picture{"results.png", 690, results}, Picture{"cell.png", 480, cell}}) {
+                                 Picture{"results.png", 690, results}, Picture{"cell.png", 480, cell},
+                                 Picture{"scan.png", 420, scan}}) {
     Canvas canvas(kWidthPx, picture.height_px, kWhite);
     picture.draw(canvas);
     if (!write_png(canvas, std::string(argv[1]) + "/" + picture.name)) return 3;

@@ -26,6 +26,11 @@ void Sketch::frame(const Box& at_px, const Rgb& colour, double width_px) {
                 {.colour = colour, .width_px = width_px});
 }
 
+void Sketch::rounded(const Box& at_px, double radius_px, const Rgb& fill, const Rgb& edge, double width_px) {
+  canvas_.rounded_box({origin_px_.x() + at_px.x, origin_px_.y() + at_px.y, at_px.width, at_px.height},
+                      radius_px, fill, {.colour = edge, .width_px = width_px});
+}
+
 void Sketch::line(const Vector2d& a_px, const Vector2d& b_px, const Rgb& colour, double width_px) {
   canvas_.polyline(std::array{place(a_px), place(b_px)}, false, {.colour = colour, .width_px = width_px});
 }

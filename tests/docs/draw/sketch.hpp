@@ -28,6 +28,7 @@ class Sketch {
   void ring(const Vector2d& at_px, double radius_px, const Rgb& edge, const Rgb& fill, double width_px = 3.0);
   void box(const report::Box& at_px, const Rgb& fill);
   void frame(const report::Box& at_px, const Rgb& colour, double width_px);
+  void rounded(const report::Box& at_px, double radius_px, const Rgb& fill, const Rgb& edge, double width_px);
   void line(const Vector2d& a_px, const Vector2d& b_px, const Rgb& colour, double width_px);
   void dashed(const Vector2d& a_px, const Vector2d& b_px, const Rgb& colour, double width_px = 2.0);
   void arrow(const Vector2d& from_px, const Vector2d& to_px, const Rgb& colour, double width_px = 2.5);
