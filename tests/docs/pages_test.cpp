@@ -1,6 +1,7 @@
 // The pages for people: their links resolve, and the commands, options and keys that they show exist.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -120,6 +121,39 @@ TEST(Pages, CommandsAndTheirOptionsExist) {
         EXPECT_NE(help.out.find(word), std::string::npos) << line.page << ": " << line.text;
       }
   }
+}
+
+/// The same run with its results in another folder, from the root of the sources.
+Ran run_from_root(const std::vector<std::string>& words, const fs::path& out) {
+  std::string arguments;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    arguments += (i > 0 && words[i - 1] == "--out" ? "'" + (out / words[i]).string() + "'" : words[i]) + " ";
+  const fs::path before = fs::current_path();
+  fs::current_path(ARRIS_SOURCE_DIR);
+  Ran ran = run_arris(arguments);
+  fs::current_path(before);
+  return ran;
+}
+
+/// A recipe for each role and each face: what the guide tells people to copy is accepted as it stands.
+TEST(Pages, ExamplesOfTheProcessEngineersGuideAreAccepted) {
+  const fs::path out = fs::path(::testing::TempDir()) / ("arris_guide_" + std::to_string(::getpid()));
+  fs::create_directories(out);
+  std::set<std::string> recipes;
+  for (const auto& [line, words] : program_calls()) {
+    if (line.page != "process-engineer.md" || words.size() < 2 || !words[1].starts_with("fixtures/guide/"))
+      continue;
+    const Ran ran = run_from_root(words, out);
+    EXPECT_EQ(ran.code, 0) << line.text << "\n" << ran.out;
+    recipes.insert(fs::path(words[1]).filename().string());
+  }
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(fs::path(ARRIS_SOURCE_DIR) / "fixtures" / "guide"))
+    if (entry.path().extension() == ".toml") {
+      EXPECT_TRUE(recipes.contains(entry.path().filename().string()))
+          << entry.path() << " is not in the guide";
+    }
+  fs::remove_all(out);
 }
 
 TEST(Pages, CommandsOfTheScriptExist) {

@@ -2,100 +2,78 @@
 // and where the path runs.
 #include <array>
 #include <cstdio>
-#include <fstream>
 #include <string>
 
-#include "report/canvas.hpp"
+#include "tests/docs/draw/sketch.hpp"
 
 namespace {
 
-using namespace arris::report;  // NOLINT: one small program
-using Eigen::Vector2d;
+using namespace arris::draw;  // NOLINT: one small program
+using arris::report::Anchor;
+using arris::report::Canvas;
 
 constexpr int kPanelWidthPx = 460, kPanelHeightPx = 300, kColumns = 2, kRows = 3;
 constexpr double kTopPx = 130.0, kBottomPx = 210.0, kHoleLeftPx = 175.0, kHoleRightPx = 285.0;
 constexpr double kLeftPx = 30.0, kRightPx = 430.0;
-const Rgb kMaterial{214, 219, 226}, kInk{34, 34, 34}, kDrawn{0, 90, 181}, kScan{120, 120, 120},
-    kPath{200, 60, 20}, kWhite{255, 255, 255};
 
 class Panel {
  public:
   Panel(Canvas& canvas, int index)
-      : canvas_(canvas), x_(kPanelWidthPx * (index % kColumns)), y_(kPanelHeightPx * (index / kColumns)) {}
+      : sketch_(canvas, kPanelWidthPx * (index % kColumns), kPanelHeightPx * (index / kColumns)) {}
 
   void part(const std::string& title, const std::string& below) {
-    canvas_.text(x_ + kLeftPx, y_ + 36, title, {.size_px = 22, .bold = true, .colour = kInk});
-    canvas_.text(x_ + kLeftPx, y_ + 270, below, {.size_px = 17, .colour = kInk});
-    for (const auto& [from, to] : sides_)
-      canvas_.rectangle({x_ + from, y_ + kTopPx, to - from, kBottomPx - kTopPx}, kMaterial);
+    sketch_.text({kLeftPx, 36}, title, {.size_px = 22, .bold = true, .colour = kInk});
+    sketch_.text({kLeftPx, 270}, below, {.size_px = 17, .colour = kInk});
+    for (const auto& [from, to] : kSides)
+      sketch_.box({from, kTopPx, to - from, kBottomPx - kTopPx}, kMaterial);
     for (double at = kLeftPx; at <= kRightPx; at += 10)
-      if (at <= kHoleLeftPx - 3 || at >= kHoleRightPx + 3) dot(at, kTopPx - 5, 2.2, kScan);
-    canvas_.text(x_ + kRightPx, y_ + 78, "scanner",
-                 {.size_px = 16, .colour = kScan, .anchor = Anchor::kRight});
-    arrow({kRightPx - 30, 86}, {kRightPx - 30, 116}, kScan);
+      if (at <= kHoleLeftPx - 3 || at >= kHoleRightPx + 3) sketch_.dot({at, kTopPx - 5}, 2.2, kScan);
+    sketch_.text({kRightPx, 78}, "scanner", {.size_px = 16, .colour = kScan, .anchor = Anchor::kRight});
+    sketch_.arrow({kRightPx - 30, 86}, {kRightPx - 30, 116}, kScan);
   }
 
   /// The drawing's line at a height, with its normal.
   void drawn(double height_px, double normal_px) {
-    for (const auto& [from, to] : sides_) line({from, height_px}, {to, height_px}, kDrawn, 4);
-    arrow({kLeftPx + 40, height_px}, {kLeftPx + 40, height_px + normal_px}, kDrawn);
+    for (const auto& [from, to] : kSides) sketch_.line({from, height_px}, {to, height_px}, kDrawn, 4);
+    sketch_.arrow({kLeftPx + 40, height_px}, {kLeftPx + 40, height_px + normal_px}, kDrawn);
   }
 
   void drawn_solid() {
-    for (const auto& [from, to] : sides_)
-      canvas_.frame({x_ + from, y_ + kTopPx, to - from, kBottomPx - kTopPx},
-                    {.colour = kDrawn, .width_px = 4});
-    arrow({kLeftPx + 40, kTopPx}, {kLeftPx + 40, kTopPx - 40}, kDrawn);
-    arrow({kLeftPx + 40, kBottomPx}, {kLeftPx + 40, kBottomPx + 32}, kDrawn);
+    for (const auto& [from, to] : kSides)
+      sketch_.frame({from, kTopPx, to - from, kBottomPx - kTopPx}, kDrawn, 4);
+    sketch_.arrow({kLeftPx + 40, kTopPx}, {kLeftPx + 40, kTopPx - 40}, kDrawn);
+    sketch_.arrow({kLeftPx + 40, kBottomPx}, {kLeftPx + 40, kBottomPx + 32}, kDrawn);
   }
 
   void moved(double from_px, double to_px) {
-    arrow({kLeftPx + 90, from_px}, {kLeftPx + 90, to_px + (to_px < from_px ? 4 : -4)}, kInk);
+    sketch_.arrow({kLeftPx + 90, from_px}, {kLeftPx + 90, to_px + (to_px < from_px ? 4 : -4)}, kInk);
   }
 
   void rim(double at_px, double height_px, const std::string& name, double text_px) {
-    dot(at_px, height_px, 6, kPath);
-    canvas_.text(x_ + 230, y_ + text_px, name, {.size_px = 17, .colour = kPath, .anchor = Anchor::kCentre});
+    sketch_.dot({at_px, height_px}, 6, kPath);
+    sketch_.text({230, text_px}, name, {.size_px = 17, .colour = kPath, .anchor = Anchor::kCentre});
   }
 
   /// The tool at the rim of a face, with its axis out of that face.
   void tool(double height_px, double axis_px) {
     for (const double at : {kHoleLeftPx, kHoleRightPx}) {
-      dot(at, height_px, 6, kPath);
-      arrow({at, height_px}, {at, height_px + axis_px}, kPath);
+      sketch_.dot({at, height_px}, 6, kPath);
+      sketch_.arrow({at, height_px}, {at, height_px + axis_px}, kPath);
     }
   }
 
   void fibre() {
-    for (const double at : {kHoleLeftPx, kHoleRightPx})
-      canvas_.polyline(std::array{place({at, kTopPx}), place({at, kBottomPx})}, false,
-                       {.colour = kPath, .width_px = 2, .dash_px = {6, 5}});
+    for (const double at : {kHoleLeftPx, kHoleRightPx}) sketch_.dashed({at, kTopPx}, {at, kBottomPx}, kPath);
   }
 
  private:
-  static constexpr std::array<std::array<double, 2>, 2> sides_ = {
+  static constexpr std::array<std::array<double, 2>, 2> kSides = {
       {{kLeftPx, kHoleLeftPx}, {kHoleRightPx, kRightPx}}};
 
-  [[nodiscard]] Vector2d place(const Vector2d& p) const { return {x_ + p.x(), y_ + p.y()}; }
-  void dot(double at_px, double height_px, double radius_px, const Rgb& fill) {
-    canvas_.disc(place({at_px, height_px}), radius_px, fill, {.colour = fill});
-  }
-  void line(const Vector2d& a, const Vector2d& b, const Rgb& colour, double width_px) {
-    canvas_.polyline(std::array{place(a), place(b)}, false, {.colour = colour, .width_px = width_px});
-  }
-  void arrow(const Vector2d& from, const Vector2d& to, const Rgb& colour) {
-    line(from, to, colour, 2.5);
-    const Vector2d back = 9.0 * (from - to).normalized(), side(0.6 * back.y(), 0.6 * back.x());
-    line(to, to + back + side, colour, 2.5);
-    line(to, to + back - side, colour, 2.5);
-  }
-
-  Canvas& canvas_;
-  double x_, y_;
+  Sketch sketch_;
 };
 
-std::string picture() {
-  Canvas canvas(kColumns * kPanelWidthPx, kRows * kPanelHeightPx, kWhite);
+void draw(Canvas& canvas) {
   const double middle_px = 0.5 * (kTopPx + kBottomPx);
   Panel scanned(canvas, 0), other(canvas, 1), mid(canvas, 2), solid(canvas, 3), near(canvas, 4),
       far(canvas, 5);
@@ -116,7 +94,6 @@ std::string picture() {
   far.part("face = \"other\"", "axes leave the far face");
   far.tool(kBottomPx, 36);
   far.fibre();
-  return canvas.png();
 }
 
 }  // namespace
@@ -126,7 +103,7 @@ int main(int argc, char** argv) {
     std::fputs("draw_faces OUT.png: the picture of docs/faces.md\n", stderr);
     return 2;
   }
-  std::ofstream out(argv[1], std::ios::binary);
-  out << picture();
-  return out.flush() ? 0 : 3;
+  Canvas canvas(kColumns * kPanelWidthPx, kRows * kPanelHeightPx, kWhite);
+  draw(canvas);
+  return write_png(canvas, argv[1]) ? 0 : 3;
 }
