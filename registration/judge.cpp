@@ -1,6 +1,7 @@
 #include "registration/judge.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 
@@ -12,6 +13,7 @@ namespace {
 constexpr double kSeamMm = 2.5,
                  kSeamEdgeLimits = 3.0;    // how far segments may disagree: bending, and the edge limit
 constexpr double kAcrossEdgeLimits = 2.0;  // an edge that seems to lie this far off may be the scan's grain
+constexpr double kImpossibleStrainRatio = 0.05;
 constexpr double kResidualMm = 0.15, kResidualSigmas = 5.0;  // of the height beside the edge
 
 /// What two segments may disagree by at their cut, and an edge may lie off the middle between two rows along
@@ -105,6 +107,17 @@ void judge_residuals(const CadModel& cad, const ScanModel& scan, Registration& r
         cad.contours[c].contour().id, result.contours[c].edge.residual_sigma_mm, scan.noise_sigma_mm);
     result.refusals.emplace_back(text);
   }
+}
+
+void judge_strain(Registration& result) {
+  if (std::abs(result.face_strain_ratio) < kImpossibleStrainRatio) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "the contours come out %.0f %% %s than drawn, which no part on a fixture is: look for folded "
+                "triangles in the drawing, and whether it is this part",
+                100.0 * std::abs(result.face_strain_ratio),
+                result.face_strain_ratio > 0.0 ? "longer" : "shorter");
+  result.refusals.emplace_back(text);
 }
 
 void judge_projection(const CadModel& cad, const ProjectionOptions& options, Registration& result) {

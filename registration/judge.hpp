@@ -15,6 +15,9 @@ void judge_seams(const CadModel& cad, Registration& result);
 /// Heights beside the edge that scatter far more than the scanner's noise are not explained by the field.
 void judge_residuals(const CadModel& cad, const ScanModel& scan, Registration& result);
 
+/// A contour that comes out so much longer or shorter than drawn as no part on a fixture is.
+void judge_strain(Registration& result);
+
 /// What a projection leaves beyond its limit, on the surface and in it. Across the edge it is also allowed
 /// what a scan of this density cannot show.
 void judge_projection(const CadModel& cad, const ProjectionOptions& options, Registration& result);

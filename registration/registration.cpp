@@ -148,6 +148,7 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   deform(cad, scan, options, result);
   if (!result.usable()) return result;
   measure_strain(cad, options, result);
+  judge_strain(result);
   if (cut) {
     result.density_per_mm2 = 1.0 / (scan.spacing_mm * scan.spacing_mm);
     return result;

@@ -26,8 +26,9 @@ constexpr double kGaugeMm = 50.0;       // weak pull to the rigid start, for mot
 constexpr double kProximalMm = 5.0;     // a round's moves along such motions stay small
 constexpr double kLeastSigmaMm = 0.02;  // the drawing's own facets
 constexpr double kSettledMm = 1e-3, kSettledEdgeLimits = 0.01;  // moves of a round that no longer matter
-constexpr double kUnknownThicknessWiden = 2.0;                  // the mid-surface's strain is then not known
-constexpr std::size_t kParts = 2;  // chunks of a list: each needs a system of its own
+constexpr double kUnfollowedMm = 0.008;  // height of a bent surface that nodes 30 mm apart do not follow
+constexpr double kUnknownThicknessWiden = 2.0;  // the mid-surface's strain is then not known
+constexpr std::size_t kParts = 2;               // chunks of a list: each needs a system of its own
 
 double area_mm2_of(const std::vector<SurfaceCell>& cells) {
   double area_mm2 = 0.0;
@@ -158,10 +159,19 @@ class SurfaceFitter {
     return std::min(kMostStrayRatio, kStrayRatio + kStrayRatioPerMm * kGateSigmas * fit_.sigma_mm);
   }
 
+  /// What a point is worth: its noise, and what nodes so far apart cannot follow of a bent surface. That is
+  /// alike for all points between the same nodes, so more of them do not average it away; trusted by their
+  /// noise alone, many points trade it for a slide in the surface, where only the edge holds the field.
+  double point_sigma_mm() const {
+    const double points_a_node = static_cast<double>(fit_.pairs) / static_cast<double>(fit_.basis->size());
+    return std::hypot(fit_.sigma_mm, kUnfollowedMm * std::sqrt(points_a_node));
+  }
+
   SurfaceSystem assemble() const {
+    const double sigma_mm = point_sigma_mm();
     SurfaceSystem system =
         summed(pairs_.size(), [&](std::size_t begin, std::size_t end, SurfaceSystem& part) {
-          add_surface(pairs_, begin, end, fit_.sigma_mm, scale_mm_, part);
+          add_surface(pairs_, begin, end, sigma_mm, scale_mm_, part);
           strips_->add(begin, end, fit_.offset_mm, tau_mm_, stray_ratio(), part);
         });
     system += summed(sheet_.size(), [&](std::size_t begin, std::size_t end, SurfaceSystem& part) {
