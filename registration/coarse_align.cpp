@@ -325,7 +325,8 @@ std::string ambiguity(const Candidate& best, const Candidate& other, double rati
            "or "
            "scan.initial";
   return "two poses fit alike (runner-up " + percent(ratio) +
-         " of the best); give scan.initial in the recipe";
+         " of the best): scan also a hole or a corner that tells them apart, or give scan.initial in the "
+         "recipe";
 }
 
 }  // namespace

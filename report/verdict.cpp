@@ -107,7 +107,11 @@ std::vector<std::string> next_steps(const RunRecord& record) {
   if (record.frame_refused()) {
     steps.emplace_back("Do not run the robot on this part: where the scanner stood is not known.");
     steps.emplace_back("Clear the reason below, scan again with the fixture targets in view, run again.");
-  } else if (record.program_written)
+  } else if (record.program_written && record.inspection_verdict() == Verdict::kFail)
+    steps.push_back("Run no program yet: whether this part is worth it is for quality to say.");
+  else if (record.program_written && !permanence_warning(record).empty())
+    steps.push_back("Read the warning, then run the dry-run program first, then the program.");
+  else if (record.program_written)
     steps.push_back("Run the dry-run program first, then the program.");
   else if (record.has_toolpath)
     steps.push_back("The corrected path is ready, but no robot program was written.");
