@@ -29,6 +29,7 @@ EdgePair pair_edge(const CadModel& cad, const Eigen::Vector3d& p_cad_mm, double 
 std::vector<LoopAssignment> assign_loops(const CadModel& cad, const std::vector<Contour>& loops,
                                          const RigidMotion& scan_from_cad, double band_mm) {
   constexpr std::size_t kSample = 60;
+  constexpr double kFollowedRatio = 0.35;  // of the contour's length
   const RigidMotion cad_from_scan = scan_from_cad.inverse();
   std::vector<LoopAssignment> assignments;
   for (const Contour& loop : loops) {
@@ -42,11 +43,17 @@ std::vector<LoopAssignment> assign_loops(const CadModel& cad, const std::vector<
     }
     LoopAssignment assignment;
     if (!distance_mm.empty()) {
-      assignment.median_mm = median_of(std::move(distance_mm));
+      assignment.median_mm = median_of(distance_mm);
       const std::size_t contour =
           static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
-      const double size_mm = cad.contours[contour].length_mm() / 6.28;
-      if (assignment.median_mm < std::min(0.1 * size_mm, 0.5 * band_mm))
+      const double contour_mm = cad.contours[contour].length_mm();
+      const double near_mm = std::min(0.1 * contour_mm / 6.28, 0.5 * band_mm);
+      const double near_ratio =
+          static_cast<double>(std::count_if(distance_mm.begin(), distance_mm.end(),
+                                            [&](double off_mm) { return off_mm < near_mm; })) /
+          static_cast<double>(distance_mm.size());
+      // The second: a gap joins it to the border of the scan, and most of it lies far off.
+      if (assignment.median_mm < near_mm || near_ratio * length_mm(loop) > kFollowedRatio * contour_mm)
         assignment.contour = static_cast<int>(contour);
     }
     assignments.push_back(assignment);

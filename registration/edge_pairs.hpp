@@ -27,8 +27,9 @@ struct LoopAssignment {
   double median_mm = 0.0;  ///< median distance to the nearest contour at the pose given
 };
 
-/// Which scan loops run along an accepted CAD contour at a pose: median distance within a tenth of the
-/// contour's size and half the band. The border of the scanned band, clamps and other openings do not.
+/// Which scan loops run along an accepted CAD contour at a pose: the median distance within a tenth of the
+/// contour's size and half the band, or so much of the loop near it as makes a third of the contour (a gap
+/// joins it to the border of the scan). That border alone, clamps and other openings do not.
 [[nodiscard]] std::vector<LoopAssignment> assign_loops(const CadModel& cad, const std::vector<Contour>& loops,
                                                        const RigidMotion& scan_from_cad, double band_mm);
 

@@ -12,7 +12,8 @@ namespace arris {
 namespace {
 
 constexpr int kSharpeningPasses = 2;
-constexpr double kBesideStockMm = 3.0;  // role cut: edges this near to the stock's are no data
+constexpr double kLoopReachRatio = 0.6;  // of the band: bending, and what the start pose is off by
+constexpr double kBesideStockMm = 3.0;   // role cut: edges this near to the stock's are no data
 
 /// Turns an undecided scan to the side that the start pose chose.
 void flip(ScanModel& scan) {
@@ -25,18 +26,23 @@ void flip(ScanModel& scan) {
   }
 }
 
-/// Keeps the edge points of the loops that run along an accepted contour; the rest is told, not used.
+/// Keeps the edge points of the loops that run along an accepted contour, and of those loops what is near it:
+/// a gap may join it to the border of the scan. The rest is told, not used.
 void drop_other_loops(const CadModel& cad, ScanModel& scan, const RigidMotion& scan_from_cad, double band_mm,
                       std::vector<LoopAssignment>& assigned) {
   assigned = assign_loops(cad, scan.loops, scan_from_cad, band_mm);
+  const RigidMotion cad_from_scan = scan_from_cad.inverse();
   scan.edge_mm.clear();
   scan.edge_normals.clear();
   for (std::size_t l = 0; l < scan.loops.size(); ++l) {
     if (l < scan.loop_rejected.size() && scan.loop_rejected[l]) assigned[l].contour = -1;
     if (assigned[l].contour < 0) continue;
-    scan.edge_mm.insert(scan.edge_mm.end(), scan.loops[l].points_mm.begin(), scan.loops[l].points_mm.end());
-    scan.edge_normals.insert(scan.edge_normals.end(), scan.loops[l].normals.begin(),
-                             scan.loops[l].normals.end());
+    for (std::size_t i = 0; i < scan.loops[l].points_mm.size(); ++i) {
+      if (pair_edge(cad, cad_from_scan * scan.loops[l].points_mm[i], kLoopReachRatio * band_mm).contour < 0)
+        continue;
+      scan.edge_mm.push_back(scan.loops[l].points_mm[i]);
+      scan.edge_normals.push_back(scan.loops[l].normals[i]);
+    }
   }
 }
 

@@ -220,14 +220,26 @@ synthetic::ScanOptions quiet() {
   return out;
 }
 
-// Hard porthole, 16: one stray beside a thin stretch held the edge 2.1 mm out; 37: two strays, 3.4 mm. Nose
-// cone, hard 20 and quiet 4: the edge sharpened before the field had followed, 1.2 and 1.1 mm.
+synthetic::ScanOptions with_open_gap() {
+  synthetic::ScanOptions out;
+  out.missing_ratio = 0.1;
+  return out;
+}
+
+// Open gaps: one patch that is missing from the edge to the border of the scan makes one loop of both; there
+// was no start pose, or one from the border. Hard porthole, 16: one stray beside a thin stretch held the
+// edge 2.1 mm out; 37: two strays, 3.4 mm. Nose cone, hard 20 and quiet 4: the edge sharpened before the
+// field had followed, 1.2 and 1.1 mm.
 INSTANTIATE_TEST_SUITE_P(
     Surface, WatchedScans,
     testing::Values(
         WatchedScan{"PortholeHard16", "porthole", hard(), 16, 1.0, true, RegistrationMethod::kSurface},
         WatchedScan{"PortholeHard37", "porthole", hard(), 37, 1.0, true, RegistrationMethod::kSurface},
         WatchedScan{"PortholeRows12", "porthole", in_rows(), 12, 1.0, false, RegistrationMethod::kSurface},
+        WatchedScan{"PortholeOpenGap2", "porthole", with_open_gap(), 2, 2.0, true,
+                    RegistrationMethod::kSurface},
+        WatchedScan{"PortholeOpenGap3", "porthole", with_open_gap(), 3, 2.0, false,
+                    RegistrationMethod::kSurface},
         WatchedScan{"NoseconeHard20", "nosecone", hard(), 20, 0.6, false, RegistrationMethod::kSurface},
         WatchedScan{"NoseconeQuiet4", "nosecone", quiet(), 4, 0.6, false, RegistrationMethod::kSurface}),
     [](const auto& at) { return std::string(at.param.name); });
