@@ -154,7 +154,7 @@ TEST(Refused, CorrectionBeyondItsLimit) {
   const Job job("fe/porthole");
   job.replace("recipe.toml", "max_correction_mm = 20.0", "max_correction_mm = 2.0");
   job.put_scan("scan.ply", testing::fe_scan("porthole", testing::usual_options("porthole"), 42));
-  expect_refused(job, job.run("scan.ply", "out"), "shift", "limit 2.0 mm");
+  expect_refused(job, job.run("scan.ply", "out"), "shift", "limit 2.00 mm");
 }
 
 /// Discs of about 60 mm without points cover the stated share of the contour: refused for the share that is
