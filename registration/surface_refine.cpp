@@ -16,7 +16,7 @@ constexpr double kAnneal = 0.6, kScaleSigmas = 4.0, kGateSigmas = 4.0;
 constexpr double kStartTauMm = 2.0, kTauShrink = 0.6;
 constexpr double kFollowedTaus = 0.3;  // a round that moves the edge by more has not followed it yet
 constexpr int kMostHeld = 8;           // rounds at one tau
-constexpr int kStrayPasses = 4;
+constexpr int kStrayPasses = 5;
 constexpr double kClaimsNearMm = 150.0;  // strays that hold one place of an edge together
 constexpr double kStrayRatio = 5e-3, kStrayRatioPerMm = 0.01, kMostStrayRatio = 0.05;  // grow with the gate
 constexpr double kFineCellRatio = 0.4,
@@ -64,8 +64,10 @@ class SurfaceFitter {
     }
     scale_mm_ = options_.start_scale_mm;
     tau_mm_ = std::max(kStartTauMm, 0.5 * scan_.spacing_mm);
-    settle();
-    for (int pass = 0; pass < kStrayPasses && fit_.usable() && call_strays(); ++pass) settle();
+    for (int pass = 0; pass < kStrayPasses; ++pass) {
+      settle();
+      if (!fit_.usable() || !call_strays()) break;
+    }
     return std::move(fit_);
   }
 
