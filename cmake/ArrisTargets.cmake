@@ -11,6 +11,9 @@ add_compile_options(-ffp-contract=off)
 if(ARRIS_SANITIZE)
   add_compile_options(-fsanitize=${ARRIS_SANITIZE} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${ARRIS_SANITIZE})
+  # With AddressSanitizer Eigen would take its own aligned allocator, and what Debian's Ceres got from malloc would be
+  # freed by it.
+  add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
   if(ARRIS_SANITIZE STREQUAL "thread")
     add_compile_definitions(ARRIS_PARALLEL_JTHREAD) # Debian's TBB is not instrumented
   endif()
