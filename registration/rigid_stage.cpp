@@ -79,6 +79,7 @@ std::vector<ContourResult> rigid_stage(const CadModel& cad, ScanModel& scan,
   if (!refined.usable()) return edges;
   add_edge_covariance(cad, edges, refined);
   result.rigid = std::move(refined);
+  if (options.method == RegistrationMethod::kSurface) return {};  // it finds its own, relative to its field
   return edges_from_rigid(cad, scan, result.rigid.scan_from_cad, options.edge);
 }
 

@@ -11,7 +11,8 @@ namespace arris {
 /// support. Extracted points end up to a spacing inside the material, of a scan in rows up to the distance of
 /// the rows, and not alike all around: a pose from them slides along an oval.
 ///   result.rigid   the pose with its covariance, of which what is unknown of the edge across is a part
-///   returns        the edges relative to it, one a contour of `cad`; empty where there is no pose
+///   returns        the edges relative to it, one a contour of `cad`; empty where there is no pose, and with
+///                  method surface, which finds its own
 [[nodiscard]] std::vector<ContourResult> rigid_stage(const CadModel& cad, ScanModel& scan,
                                                      const RegistrationOptions& options,
                                                      Registration& result);

@@ -121,7 +121,7 @@ void deform_by_surface(const CadModel& cad, const ScanModel& scan, const Registr
   std::vector<SeenAlong> seen;
   for (std::size_t c = 0; c < cad.contours.size(); ++c)
     seen.push_back(seen_along(scan, cad.contours[c], result.contours[c], options.role));
-  result.seen_ratio = seen_ratio(seen);
+  if (options.role == ContourRole::kCut) result.seen_ratio = seen_ratio(seen);  // else from the edges
   field->set_seen(std::move(seen));
   judge_place(cad, *field, options, result);
   result.field = std::move(field);

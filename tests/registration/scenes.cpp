@@ -17,6 +17,14 @@ CadModel cad_of(const synthetic::Part& part, const std::vector<int>& contours, d
   return prepare_cad(part.cad_mesh(edge_mm), accepted, others);
 }
 
+synthetic::PlateShape bent_plate_with_circle() {
+  synthetic::PlateShape shape = synthetic::plate_with_circle(100.0);
+  shape.bend_curvature_per_mm = 1.0 / 1500.0;
+  shape.bend_axis_rad = 0.4;
+  shape.twist_rad_per_mm = 2e-4;
+  return shape;
+}
+
 synthetic::FePart fe(const std::string& name) {
   return synthetic::load_fe_part(std::filesystem::path(ARRIS_SOURCE_DIR) / "fixtures" / "fe" / name);
 }

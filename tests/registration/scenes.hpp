@@ -18,6 +18,9 @@ namespace arris::scenes {
 /// A part's drawing with the contours asked for (0: the opening).
 CadModel cad_of(const synthetic::Part& part, const std::vector<int>& contours = {0}, double edge_mm = 20.0);
 
+/// A plate with a round hole, bent over its width and twisted: no segment of the hole moves rigidly.
+synthetic::PlateShape bent_plate_with_circle();
+
 synthetic::FePart fe(const std::string& name);
 
 /// A scan as the pipeline prepares it, with its truth in the frame of the prepared scan.

@@ -183,13 +183,6 @@ TEST_F(HingedPlate, FitThatFailsKeepsTheMotionsGivenAndSaysSo) {
 /// A plate that bends and twists smoothly, with noise: no segment moves rigidly.
 class BentPlate : public testing::Test {
  protected:
-  static synthetic::PlateShape shape() {
-    synthetic::PlateShape out = synthetic::plate_with_circle(100.0);
-    out.bend_curvature_per_mm = 1.0 / 1500.0;
-    out.bend_axis_rad = 0.4;
-    out.twist_rad_per_mm = 2e-4;
-    return out;
-  }
   struct Pair {
     ContourMotion before;
     SegmentRefinement after;
@@ -218,7 +211,7 @@ class BentPlate : public testing::Test {
     return scenes::distance_between(images_mm, trial.true_curve_mm);
   }
 
-  PlatePart part_{shape()};
+  PlatePart part_{scenes::bent_plate_with_circle()};
   CadModel cad_ = scenes::cad_of(part_);
 };
 

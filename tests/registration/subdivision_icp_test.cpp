@@ -15,13 +15,6 @@ using synthetic::PlatePart;
 /// A plate with a round hole, bent over its width and twisted; the true edge is known at every point.
 class SubdivisionIcpOnPlate : public testing::Test {
  protected:
-  static synthetic::PlateShape shape() {
-    synthetic::PlateShape out = synthetic::plate_with_circle(100.0);
-    out.bend_curvature_per_mm = 1.0 / 1500.0;
-    out.bend_axis_rad = 0.4;
-    out.twist_rad_per_mm = 2e-4;
-    return out;
-  }
   /// The true edge, sampled, as edge data.
   EdgeData edge_data(const Trial& trial) const {
     EdgeData data;
@@ -49,7 +42,7 @@ class SubdivisionIcpOnPlate : public testing::Test {
     return options;
   }
 
-  PlatePart part_{shape()};
+  PlatePart part_{scenes::bent_plate_with_circle()};
   CadModel cad_ = scenes::cad_of(part_);
 };
 
@@ -83,7 +76,7 @@ TEST_F(SubdivisionIcpOnPlate, StabilityPointsFrozenInEverySegmentUndoTheSubdivis
 }
 
 TEST_F(SubdivisionIcpOnPlate, UndeformedPartLeavesEverySegmentWithinNoiseOfTheRigidMotion) {
-  synthetic::PlateShape flat = shape();
+  synthetic::PlateShape flat = scenes::bent_plate_with_circle();
   flat.bend_curvature_per_mm = flat.twist_rad_per_mm = 0.0;
   const PlatePart part(flat);
   const CadModel cad = scenes::cad_of(part);
