@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <thread>
 
@@ -34,9 +35,9 @@ std::string as_word(const fs::path& path) {
 }
 
 std::string duration_words(double seconds) {
-  if (seconds < 90.0) return std::to_string(static_cast<int>(seconds + 0.5)) + " s";
-  if (seconds < 5400.0) return std::to_string(static_cast<int>(seconds / 60.0 + 0.5)) + " min";
-  return std::to_string(static_cast<int>(seconds / 3600.0 + 0.5)) + " h";
+  if (seconds < 90.0) return std::to_string(std::lround(seconds)) + " s";
+  if (seconds < 5400.0) return std::to_string(std::lround(seconds / 60.0)) + " min";
+  return std::to_string(std::lround(seconds / 3600.0)) + " h";
 }
 
 /// What every run of the batch shares.

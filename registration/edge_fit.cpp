@@ -290,7 +290,7 @@ class EdgeFitter {
 
 }  // namespace
 
-EdgeFit::EdgeFit(ArcSpline along) : spline(std::move(along)) {
+EdgeFit::EdgeFit(const ArcSpline& along) : spline(along) {
   const int n = spline.size();
   across = height = tilt = Eigen::VectorXd::Zero(n);
   across_covariance = height_covariance = tilt_covariance = Eigen::MatrixXd::Zero(n, n);

@@ -38,7 +38,7 @@ struct EdgeFit {
   std::size_t points = 0;          ///< inliers of the height fit
 
   /// Nothing found yet: zero on this spline.
-  explicit EdgeFit(ArcSpline along);
+  explicit EdgeFit(const ArcSpline& along);
   [[nodiscard]] bool seen_at(double arc_mm) const;
   [[nodiscard]] double row_gap_at_mm(double arc_mm) const;
   /// Arc length to the nearest place where the edge was seen; 0 where it was.

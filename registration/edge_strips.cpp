@@ -16,7 +16,7 @@ constexpr std::size_t kChunk = 256;
 
 }  // namespace
 
-EdgeStrips::EdgeStrips(std::vector<const Curve*> edges, const SurfaceBasis& basis, double strip_mm,
+EdgeStrips::EdgeStrips(const std::vector<const Curve*>& edges, const SurfaceBasis& basis, double strip_mm,
                        double spacing_mm)
     : strip_mm_(strip_mm), spacing_mm_(spacing_mm) {
   for (const Curve* curve : edges) {

@@ -15,7 +15,8 @@ namespace arris {
 class EdgeStrips {
  public:
   /// edges must outlive this; spacing_mm is the scan's.
-  EdgeStrips(std::vector<const Curve*> edges, const SurfaceBasis& basis, double strip_mm, double spacing_mm);
+  EdgeStrips(const std::vector<const Curve*>& edges, const SurfaceBasis& basis, double strip_mm,
+             double spacing_mm);
 
   /// Renews the strips: pairs within reach_mm of an edge carried by shift_mm, and within gate_mm of the
   /// surface.

@@ -69,8 +69,7 @@ std::vector<ContourResult> rigid_stage(const CadModel& cad, ScanModel& scan,
   icp.start_scale_mm = std::max(3.0 * result.coarse.score_mm, 4.0 * scan.spacing_mm);
   result.rigid = icp_point_to_plane(cad, scan, result.coarse.scan_from_cad, icp);
   if (!result.rigid.usable()) return {};
-  const std::vector<ContourResult> edges =
-      edges_from_rigid(cad, scan, result.rigid.scan_from_cad, options.edge);
+  std::vector<ContourResult> edges = edges_from_rigid(cad, scan, result.rigid.scan_from_cad, options.edge);
   std::vector<Eigen::Vector3d> extracted = std::exchange(scan.edge_mm, sharpened(cad, scan, edges).points_mm);
   icp.start_scale_mm = 4.0 * scan.spacing_mm;
   icp.with_covariance = true;

@@ -15,6 +15,8 @@ constexpr double kCosSameSheet = 0.2;
 constexpr double kQuadraticRidge = 1e-6;  // of the moment matrix, on the second-order terms only
 constexpr double kWorstPivotRatio = 1e-9;
 constexpr std::size_t kFewestNodes = 6;
+constexpr double kMostCellsASide =
+    100.0;  // contours may lie far apart; cells wider than the radius serve as well
 
 /// Wendland's C2 function; 1 at 0, 0 from q = 1 on.
 double wendland_c2(double q) {
@@ -33,9 +35,10 @@ SurfaceBasis::SurfaceBasis(SurfaceNodes nodes, double spacing_mm)
     low_mm_ = low_mm_.cwiseMin(p);
     high_mm = high_mm.cwiseMax(p);
   }
-  count_ = ((high_mm - low_mm_) / radius_mm_).array().floor().cast<int>() + 1;
+  cell_mm_ = std::max(radius_mm_, (high_mm - low_mm_).maxCoeff() / kMostCellsASide);
+  count_ = ((high_mm - low_mm_) / cell_mm_).array().floor().cast<int>() + 1;
   const auto place = [&](const Eigen::Vector3d& p) {
-    const Eigen::Array3i at = ((p - low_mm_) / radius_mm_).array().floor().cast<int>();
+    const Eigen::Array3i at = ((p - low_mm_) / cell_mm_).array().floor().cast<int>();
     return cell_of(at.x(), at.y(), at.z());
   };
   start_.assign(static_cast<std::size_t>(count_.prod()) + 1, 0);
@@ -58,7 +61,7 @@ BasisRow SurfaceBasis::row(const Eigen::Vector3d& p_cad_mm, const Eigen::Vector3
   row.t1 = frame.col(0);
   row.t2 = frame.col(1);
   if (order_.empty()) return row;
-  const Eigen::Array3i at = ((p_cad_mm - low_mm_) / radius_mm_).array().floor().cast<int>();
+  const Eigen::Array3i at = ((p_cad_mm - low_mm_) / cell_mm_).array().floor().cast<int>();
   std::vector<double> weights;
   const Eigen::Array3i low = (at - 1).max(0), high = (at + 1).min(count_ - 1);
   for (int z = low.z(); z <= high.z(); ++z)

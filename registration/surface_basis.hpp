@@ -49,6 +49,7 @@ class SurfaceBasis {
 
   SurfaceNodes nodes_;
   double spacing_mm_, radius_mm_;
+  double cell_mm_ = 1.0;  // of the grid that finds nodes
   Eigen::Vector3d low_mm_ = Eigen::Vector3d::Zero();
   Eigen::Array3i count_ = Eigen::Array3i::Ones();
   std::vector<std::uint32_t> start_;  // of each grid cell into order_

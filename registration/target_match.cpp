@@ -146,7 +146,7 @@ bool on_a_line(std::span<const Eigen::Vector3d> places_mm) {
   for (const Eigen::Vector3d& p_mm : places_mm)
     squares += (p_mm - centre_mm) * (p_mm - centre_mm).transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares, Eigen::EigenvaluesOnly);
-  const Eigen::Vector3d spread = solver.eigenvalues();
+  const Eigen::Vector3d& spread = solver.eigenvalues();
   return !(spread(1) > kLineRatio * kLineRatio * spread(2));
 }
 

@@ -24,10 +24,11 @@ template <class T>
 void make_room(const Source& source, std::vector<T>& items, std::size_t count) {
   try {
     items.reserve(count);
-    const auto begin = reinterpret_cast<std::uintptr_t>(items.data());
+    char* const room = reinterpret_cast<char*>(items.data());
+    const auto begin = reinterpret_cast<std::uintptr_t>(room);
     const std::uintptr_t first = (begin + kHugePage - 1) & ~(kHugePage - 1);
     const std::uintptr_t last = (begin + count * sizeof(T)) & ~(kHugePage - 1);
-    if (first < last) ::madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+    if (first < last) ::madvise(room + (first - begin), last - first, MADV_HUGEPAGE);
     items.resize(count);
   } catch (const std::bad_alloc&) {
     throw bad_file(source, "the file does not fit into memory", "", std::to_string(count) + " points",

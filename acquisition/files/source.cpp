@@ -122,7 +122,7 @@ std::string unit_in(std::string_view comment) {
       while (next < small.size() && !is_letter(small[next])) ++next;
       std::size_t end = next;
       while (end < small.size() && is_letter(small[end])) ++end;
-      const std::string unit = unit_of_word(std::string_view(small).substr(next, end - next));
+      std::string unit = unit_of_word(std::string_view(small).substr(next, end - next));
       if (!unit.empty()) return unit;
       next = end;
     }

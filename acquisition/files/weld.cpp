@@ -30,6 +30,8 @@ std::uint32_t hash_of(const Eigen::Vector3d& p) {
 
 template <class Point>
 bool same_bits(const Point& a, const Point& b) {
+  // The bits and not the values: -0 is not 0, and a NaN is itself.
+  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
   return std::memcmp(a.data(), b.data(), sizeof(Point)) == 0;
 }
 

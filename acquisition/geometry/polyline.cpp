@@ -160,7 +160,7 @@ void Curve::search(const Eigen::Vector3d& query_mm, double& best_mm2, CurveFoot&
 }
 
 CurveFoot Curve::nearest(const Eigen::Vector3d& query_mm) const {
-  const CurveFoot best = nearest_within(query_mm, kNoDistance);
+  CurveFoot best = nearest_within(query_mm, kNoDistance);
   if (best.segment < 0) throw Error(Fault::kBug, "Curve::nearest: the query is not finite");
   return best;
 }
