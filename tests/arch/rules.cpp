@@ -103,8 +103,8 @@ std::string to_text(const std::vector<Offence>& offences) {
 }
 
 std::string room_of(const std::string& path) {
-  for (const std::string part : {"types", "geometry", "bridge"})
-    if (is_beneath(path, "acquisition/" + part)) return part;
+  for (const char* part : {"types", "geometry", "bridge"})
+    if (is_beneath(path, std::string("acquisition/") + part)) return part;
   const std::string folder = path.substr(0, path.find('/'));
   return folder != path && doors().contains(folder) ? folder : "";
 }

@@ -20,7 +20,7 @@ TestFolder::~TestFolder() {
 }
 
 std::filesystem::path TestFolder::write(const std::string& name, const std::string& text) const {
-  const std::filesystem::path file = path_ / name;
+  std::filesystem::path file = path_ / name;
   std::filesystem::create_directories(file.parent_path());
   std::ofstream(file, std::ios::binary) << text;
   return file;

@@ -10,7 +10,6 @@
 namespace arris {
 namespace {
 
-using scenes::Trial;
 using synthetic::PlatePart;
 
 constexpr double kRadiusMm = 60.0, kSpacingMm = 2.0;
