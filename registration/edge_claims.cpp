@@ -11,11 +11,13 @@ namespace {
 constexpr double kLeastLever = 0.1;     // of a claim that may carry an edge together with another one
 constexpr double kMostLever = 0.98;     // the bound on the curvature may exceed its true share
 constexpr double kLeastLogOdds = -5.0;  // below them a doubt is none
+constexpr int kMoveSteps = 10;
 
 /// One or two claims to let go together.
 struct Alternative {
   std::vector<std::size_t> claims;
-  Eigen::VectorXd move;  // of the unknowns, as factors of the claims' columns
+  Eigen::VectorXd move;                 // of the unknowns, as factors of the claims' columns
+  double saved = 0.0, quadratic = 0.0;  // by calling them strays; by the move, as the tangents have it
   double gain = 0.0;
 };
 
@@ -33,14 +35,15 @@ class ClaimJudge {
 
   [[nodiscard]] Alternative without(std::vector<std::size_t> claims) const {
     const auto n = static_cast<Eigen::Index>(claims.size());
-    Alternative result{std::move(claims), {}, 0.0};
+    Alternative result;
+    result.claims = std::move(claims);
     Eigen::MatrixXd spread(n, n);  // V
     Eigen::VectorXd slope(n), curvature(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       const EdgeClaim& a = claims_[result.claims[static_cast<std::size_t>(i)]];
       slope[i] = a.slope;
       curvature[i] = a.curvature;
-      result.gain += a.saved;
+      result.saved += a.saved;
       for (Eigen::Index j = 0; j < n; ++j)
         spread(i, j) = system_.dot(a.row, columns_[result.claims[static_cast<std::size_t>(j)]]);
     }
@@ -50,8 +53,25 @@ class ClaimJudge {
     if (largest > kMostLever) curvature *= kMostLever / largest;
     const Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(n, n) - curvature.asDiagonal() * spread;
     result.move = rest.partialPivLu().solve(slope);
-    result.gain += 0.5 * slope.dot(spread * result.move);
+    result.quadratic = 0.5 * slope.dot(spread * result.move);
+    result.gain = result.saved + result.quadratic;
     return result;
+  }
+
+  /// Takes the alternative as far along its move as it pays.
+  void meet(const EdgeResistance& resistance, Alternative& alternative) const {
+    const Eigen::VectorXd whole = move_of(alternative);
+    double best = 0.0, share = 0.0;
+    for (int step = 1; step <= kMoveSteps; ++step) {
+      const double t = static_cast<double>(step) / kMoveSteps;
+      const double gain = alternative.quadratic * (2.0 - t) * t - resistance(t * whole, alternative.claims);
+      if (gain > best) {
+        best = gain;
+        share = t;
+      }
+    }
+    alternative.gain = alternative.saved + best;
+    alternative.move *= share;
   }
 
   [[nodiscard]] Eigen::VectorXd move_of(const Alternative& alternative) const {
@@ -70,7 +90,8 @@ class ClaimJudge {
 }  // namespace
 
 ClaimVerdict judge_claims(const SurfaceSystem& system, const Eigen::MatrixXd& inverse,
-                          const std::vector<EdgeClaim>& claims, double near_mm) {
+                          const std::vector<EdgeClaim>& claims, double near_mm,
+                          const EdgeResistance& resistance) {
   const ClaimJudge judge(system, inverse, claims);
   std::vector<Alternative> alternatives;
   std::vector<std::size_t> carrying;
@@ -83,6 +104,9 @@ ClaimVerdict judge_claims(const SurfaceSystem& system, const Eigen::MatrixXd& in
       if (a < b && claims[a].row.offset == claims[b].row.offset &&
           std::abs(claims[a].arc_mm - claims[b].arc_mm) < near_mm)
         alternatives.push_back(judge.without({a, b}));
+  std::erase_if(alternatives, [](const Alternative& a) { return a.gain < kLeastLogOdds; });
+  if (resistance)
+    for (Alternative& alternative : alternatives) judge.meet(resistance, alternative);
   std::stable_sort(alternatives.begin(), alternatives.end(),
                    [](const Alternative& a, const Alternative& b) { return a.gain > b.gain; });
   ClaimVerdict verdict;

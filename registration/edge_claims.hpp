@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "registration/surface_system.hpp"
@@ -18,6 +20,11 @@ struct EdgeClaim {
   double saved = 0.0;
 };
 
+/// What the points of the strips but for some claims (as indices) cost more at the fit moved by `move` than
+/// their tangent parabolas say: a point that the edge comes to meet resists as soon as it is met.
+using EdgeResistance =
+    std::function<double(const Eigen::VectorXd& move, std::span<const std::size_t> without)>;
+
 struct ClaimVerdict {
   std::vector<std::size_t> strays;  ///< pairs
   Eigen::MatrixXd doubt;            ///< covariance of the unknowns by claims that may be strays; mm^2
@@ -27,10 +34,12 @@ struct ClaimVerdict {
 /// them, and the fit's own curvature calls them certain. With V = J H^-1 J' of some claims the rest of the
 /// fit gains s'V(1 - C V)^-1 s / 2 when they are let go, and moves by H^-1 J'(1 - C V)^-1 s. Where that is
 /// more than strays cost, they are strays; where it is nearly as much, the move is a doubt about the edge, by
-/// its odds. Each claim alone, and each two within near_mm along a contour.
+/// its odds. Each claim alone, and each two within near_mm along a contour. The edge goes that way as far as
+/// it pays against the others' resistance.
 ///   inverse  H^-1 of the settled fit
-///   cost     O(claims * unknowns * 75)
+///   cost     O(claims * unknowns * 75), and some resistances for each claim that is nearly let go
 [[nodiscard]] ClaimVerdict judge_claims(const SurfaceSystem& system, const Eigen::MatrixXd& inverse,
-                                        const std::vector<EdgeClaim>& claims, double near_mm);
+                                        const std::vector<EdgeClaim>& claims, double near_mm,
+                                        const EdgeResistance& resistance = {});
 
 }  // namespace arris

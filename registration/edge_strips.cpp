@@ -12,6 +12,9 @@ namespace {
 constexpr double kStationMm = 2.0;
 constexpr double kTauFloorMm = 0.03;
 constexpr double kClaimTaus = 3.0;  // farther inside a point pulls nothing, farther outside it is let go
+constexpr double kNearRatio = 0.2, kStrayHeightMm = 2.0;  // flyers of an edge stand above and below it
+constexpr double kUnseenStrays = 0.5;                     // none seen is no proof that there are none
+constexpr double kMostStrayRatio = 0.05;                  // early rounds leave material beyond the edge
 constexpr std::size_t kChunk = 256;
 
 }  // namespace
@@ -29,6 +32,8 @@ EdgeStrips::EdgeStrips(const std::vector<const Curve*>& edges, const SurfaceBasi
 
 void EdgeStrips::update(const std::vector<SurfacePair>& pairs, const std::vector<Eigen::Vector3d>& shift_mm,
                         double reach_mm, double gate_mm, int threads) {
+  reach_mm_ = reach_mm;
+  gate_mm_ = gate_mm;
   std::vector<std::optional<CarriedContour>> carried(edges_.size());
   for (std::size_t e = 0; e < edges_.size(); ++e) {
     Edge& edge = edges_[e];
@@ -99,6 +104,67 @@ void EdgeStrips::add(std::size_t begin, std::size_t end, const std::vector<doubl
     set_row(p, row);
     system.add(row, p.weight * pull.slope_per_mm, p.weight * pull.curvature_per_mm2);
   }
+}
+
+double EdgeStrips::resistance(const Eigen::VectorXd& move, const std::vector<double>& offset_mm,
+                              double tau_mm, double stray_ratio,
+                              std::span<const std::size_t> without_pairs) const {
+  const EdgeSupport support{tau_mm, strip_mm_, stray_ratio};
+  const Eigen::Index nodes = move.size() - static_cast<Eigen::Index>(edges_.size());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Point& p = points_[i];
+    if (!counts(i) || stray_[i] ||
+        std::find(without_pairs.begin(), without_pairs.end(), i) != without_pairs.end())
+      continue;
+    const ContourStation& station = edges_[p.edge].stations[p.foot.station];
+    Eigen::Vector3d moved_mm = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < station.row.node.size(); ++k)
+      moved_mm += station.row.weight[k][BasisRow::kValue] * move.segment<3>(3 * station.row.node[k]);
+    const double offset_moved_mm = move[nodes + static_cast<Eigen::Index>(p.edge)];
+    const double by_mm = -moved_mm.dot(edges_[p.edge].inward[p.foot.station]) - offset_moved_mm;
+    const double inside_mm = p.foot.across_mm - offset_mm[p.edge];
+    const EdgeSupport::Pull pull = support.at(inside_mm);
+    sum += p.weight * (support.whole_cost(inside_mm + by_mm) - support.whole_cost(inside_mm) -
+                       pull.slope_per_mm * by_mm - 0.5 * pull.curvature_per_mm2 * by_mm * by_mm);
+  }
+  return sum;
+}
+
+double EdgeStrips::void_mm2(double from_mm, double to_mm) const {
+  double sum_mm2 = 0.0;
+  for (const Edge& edge : edges_)
+    for (std::size_t k = 0; k + 1 < edge.stations.size(); ++k) {
+      const ContourStation& station = edge.stations[k];
+      if (!edge.bins.seen[edge.bins.bin_of(station.arc_mm)]) continue;
+      const double fan = std::max(0.0, station.fan_per_mm);  // the void narrows towards the middle of a hole
+      const double end_mm = fan * to_mm > 1.0 ? std::max(from_mm, 1.0 / fan) : to_mm;
+      const double width_mm = (end_mm - from_mm) * (1.0 - 0.5 * fan * (end_mm + from_mm));
+      sum_mm2 += (edge.stations[k + 1].arc_mm - station.arc_mm) * width_mm;
+    }
+  return sum_mm2;
+}
+
+std::size_t EdgeStrips::points_in_void(double from_mm, double to_mm, double height_mm) const {
+  return static_cast<std::size_t>(std::count_if(points_.begin(), points_.end(), [&](const Point& p) {
+    const double outside_mm = -p.foot.across_mm;
+    return p.foot.distance_mm < reach_mm_ && outside_mm > from_mm && outside_mm < to_mm &&
+           std::abs(p.foot.height_mm) < height_mm &&
+           edges_[p.edge].bins.seen[edges_[p.edge].bins.bin_of(p.foot.arc_mm)];
+  }));
+}
+
+double EdgeStrips::stray_ratio() const {
+  const double density_per_mm2 = greatest_density_per_mm2();
+  const auto ratio = [&](double strays, double from_mm, double to_mm) {
+    return strays / std::max(1.0, density_per_mm2 * void_mm2(from_mm, to_mm));
+  };
+  const double far_mm = 0.5 * strip_mm_, near_mm = kNearRatio * strip_mm_;
+  const double level = static_cast<double>(points_in_void(far_mm, reach_mm_, gate_mm_));
+  const double all = static_cast<double>(points_in_void(near_mm, strip_mm_, kStrayHeightMm));
+  return std::min(kMostStrayRatio,
+                  std::max(ratio(kUnseenStrays + level, far_mm, reach_mm_),
+                           ratio(all * std::min(1.0, gate_mm_ / kStrayHeightMm), near_mm, strip_mm_)));
 }
 
 std::vector<EdgeClaim> EdgeStrips::claims(const std::vector<double>& offset_mm, double tau_mm,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "registration/carried_contour.hpp"
@@ -37,6 +38,15 @@ class EdgeStrips {
   /// The points that pull their edge outward.
   [[nodiscard]] std::vector<EdgeClaim> claims(const std::vector<double>& offset_mm, double tau_mm,
                                               double stray_ratio) const;
+  /// What the points cost more at the fit moved by `move` (of the unknowns) than their tangents say, without
+  /// some pairs.
+  [[nodiscard]] double resistance(const Eigen::VectorXd& move, const std::vector<double>& offset_mm,
+                                  double tau_mm, double stray_ratio,
+                                  std::span<const std::size_t> without_pairs) const;
+  /// Density of strays over that of the material, near the surface and beyond the edges, where there is no
+  /// material: of what lies level with it farther out than half a strip, or of what stands above and below it
+  /// nearer by, whichever is more.
+  [[nodiscard]] double stray_ratio() const;
   /// From now on this pair pulls no edge outward.
   void call_stray(std::size_t pair) { stray_[pair] = 1; }
 
@@ -58,11 +68,14 @@ class EdgeStrips {
     SeenBins bins;
   };
   void find_seen(std::size_t e);
+  [[nodiscard]] double void_mm2(double from_mm, double to_mm) const;
+  [[nodiscard]] std::size_t points_in_void(double from_mm, double to_mm, double height_mm) const;
   [[nodiscard]] bool counts(std::size_t point) const;
   void set_row(const Point& point, SurfaceSystem::Row& row) const;
 
   std::vector<Edge> edges_;
   double strip_mm_, spacing_mm_;
+  double reach_mm_ = 0.0, gate_mm_ = 0.0;  // of the last update
   std::vector<Point> points_;
   std::vector<char> stray_;  // one a pair
 };

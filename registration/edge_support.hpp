@@ -24,6 +24,10 @@ struct EdgeSupport {
   [[nodiscard]] double cost(double inside_mm) const {
     return -std::log(sigmoid(inside_mm / tau_mm - kBalance) + stray_ratio);
   }
+  /// With the pull that its strip's density asks for, up to a constant.
+  [[nodiscard]] double whole_cost(double inside_mm) const {
+    return cost(inside_mm) + std::clamp(inside_mm, 0.0, strip_mm) / strip_mm;
+  }
   static double sigmoid(double x) {
     return x >= 0.0 ? 1.0 / (1.0 + std::exp(-x)) : std::exp(x) / (1.0 + std::exp(x));
   }

@@ -18,7 +18,6 @@ constexpr double kFollowedTaus = 0.3;  // a round that moves the edge by more ha
 constexpr int kMostHeld = 8;           // rounds at one tau
 constexpr int kStrayPasses = 5;
 constexpr double kClaimsNearMm = 150.0;  // strays that hold one place of an edge together
-constexpr double kStrayRatio = 5e-3, kStrayRatioPerMm = 0.01, kMostStrayRatio = 0.05;  // grow with the gate
 constexpr double kFineCellRatio = 0.4,
                  kCellRatio = 0.6;  // of the node spacing: to place nodes; of the priors
 constexpr std::size_t kMostNodes = 400;
@@ -109,8 +108,14 @@ class SurfaceFitter {
     const Eigen::Index n = system.gradient.size();
     fit_.covariance =
         Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>(system.information).solve(Eigen::MatrixXd::Identity(n, n));
-    const ClaimVerdict verdict = judge_claims(
-        system, fit_.covariance, strips_->claims(fit_.offset_mm, tau_mm_, stray_ratio()), kClaimsNearMm);
+    const double ratio = stray_ratio();
+    const std::vector<EdgeClaim> claims = strips_->claims(fit_.offset_mm, tau_mm_, ratio);
+    const auto resistance = [&](const Eigen::VectorXd& move, std::span<const std::size_t> without) {
+      std::vector<std::size_t> pairs;
+      for (const std::size_t a : without) pairs.push_back(claims[a].pair);
+      return strips_->resistance(move, fit_.offset_mm, tau_mm_, ratio, pairs);
+    };
+    const ClaimVerdict verdict = judge_claims(system, fit_.covariance, claims, kClaimsNearMm, resistance);
     for (const std::size_t pair : verdict.strays) strips_->call_stray(pair);
     fit_.covariance += verdict.doubt;
     return !verdict.strays.empty();
@@ -157,9 +162,7 @@ class SurfaceFitter {
                         });
   }
 
-  double stray_ratio() const {
-    return std::min(kMostStrayRatio, kStrayRatio + kStrayRatioPerMm * kGateSigmas * fit_.sigma_mm);
-  }
+  double stray_ratio() const { return strips_->stray_ratio(); }
 
   /// What a point is worth: its noise, and what nodes so far apart cannot follow of a bent surface. That is
   /// alike for all points between the same nodes, so more of them do not average it away; trusted by their

@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <span>
 
 #include "fixtures/synthetic/random.hpp"
 
@@ -111,6 +112,27 @@ TEST(EdgeClaims, TwoThatHoldAnEdgeTogetherAreJudgedTogether) {
     EXPECT_TRUE(judge_claims(fit.all, inverse, fit.claims, 5.0).strays.empty()) << "too far apart, " << seed;
   }
   EXPECT_GT(judged, 5);
+}
+
+TEST(EdgeClaims, TheEdgeGoesNoFartherThanTheOthersLetIt) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Quadratics fit(seed, {-3.0});
+    const auto [move, gain] = fit.solved_without({0});
+    fit.claims[0].saved = -gain - 1.0;
+    const Eigen::MatrixXd inverse = fit.full().inverse();
+    const double length = move.norm();
+    const auto wall = [&](const Eigen::VectorXd& moved, std::span<const std::size_t> without) {
+      EXPECT_EQ(std::vector<std::size_t>(without.begin(), without.end()), std::vector<std::size_t>{0});
+      return moved.norm() > 0.41 * length ? 1e9 : 0.0;
+    };
+    const ClaimVerdict verdict = judge_claims(fit.all, inverse, fit.claims, 50.0, wall);
+    const double met = fit.claims[0].saved + gain * (2.0 - 0.4) * 0.4, odds = std::exp(met);
+    const Eigen::MatrixXd expected = odds / (1.0 + odds) * 0.16 * move * move.transpose();
+    EXPECT_LT((verdict.doubt - expected).norm(), 1e-6 * expected.norm()) << seed;
+    const auto free = [](const Eigen::VectorXd&, std::span<const std::size_t>) { return 0.0; };
+    EXPECT_TRUE(judge_claims(fit.all, inverse, fit.claims, 50.0, free)
+                    .doubt.isApprox(judge_claims(fit.all, inverse, fit.claims, 50.0).doubt));
+  }
 }
 
 }  // namespace
