@@ -105,14 +105,12 @@ ClaimVerdict judge_claims(const SurfaceSystem& system, const Eigen::MatrixXd& in
           std::abs(claims[a].arc_mm - claims[b].arc_mm) < near_mm)
         alternatives.push_back(judge.without({a, b}));
   std::erase_if(alternatives, [](const Alternative& a) { return a.gain < kLeastLogOdds; });
-  if (resistance)
-    for (Alternative& alternative : alternatives) judge.meet(resistance, alternative);
   std::stable_sort(alternatives.begin(), alternatives.end(),
                    [](const Alternative& a, const Alternative& b) { return a.gain > b.gain; });
   ClaimVerdict verdict;
   verdict.doubt = Eigen::MatrixXd::Zero(inverse.rows(), inverse.cols());
   std::vector<char> taken(claims.size(), 0);
-  for (const Alternative& alternative : alternatives) {
+  for (Alternative& alternative : alternatives) {
     if (alternative.gain < kLeastLogOdds) break;
     const auto& ids = alternative.claims;
     if (std::any_of(ids.begin(), ids.end(), [&](std::size_t a) { return taken[a] != 0; })) continue;
@@ -121,6 +119,7 @@ ClaimVerdict judge_claims(const SurfaceSystem& system, const Eigen::MatrixXd& in
       for (const std::size_t a : ids) verdict.strays.push_back(claims[a].pair);
       continue;
     }
+    if (resistance) judge.meet(resistance, alternative);
     const Eigen::VectorXd move = judge.move_of(alternative);
     const double odds = std::exp(alternative.gain);
     verdict.doubt.noalias() += odds / (1.0 + odds) * move * move.transpose();

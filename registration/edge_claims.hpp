@@ -34,8 +34,9 @@ struct ClaimVerdict {
 /// them, and the fit's own curvature calls them certain. With V = J H^-1 J' of some claims the rest of the
 /// fit gains s'V(1 - C V)^-1 s / 2 when they are let go, and moves by H^-1 J'(1 - C V)^-1 s. Where that is
 /// more than strays cost, they are strays; where it is nearly as much, the move is a doubt about the edge, by
-/// its odds. Each claim alone, and each two within near_mm along a contour. The edge goes that way as far as
-/// it pays against the others' resistance.
+/// its odds. Each claim alone, and each two within near_mm along a contour. Strays are called by the tangents
+/// alone, and a doubt goes as far along its move as that pays against the others' resistance: the straight
+/// move is not the way the edge would go, and judged by it a stray once held an edge 2.1 mm out.
 ///   inverse  H^-1 of the settled fit
 ///   cost     O(claims * unknowns * 75), and some resistances for each claim that is nearly let go
 [[nodiscard]] ClaimVerdict judge_claims(const SurfaceSystem& system, const Eigen::MatrixXd& inverse,

@@ -49,8 +49,7 @@ struct Strip {
 TEST(EdgeStrips, CountsStraysBesideTheMaterialsDensity) {
   for (const double truth : {0.005, 0.02}) {
     double mean = 0.0;
-    for (std::uint64_t seed = 1; seed <= 8; ++seed)
-      mean += Strip(truth, seed).strips.stray_ratio() / 8;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) mean += Strip(truth, seed).strips.stray_ratio() / 8;
     EXPECT_NEAR(mean, truth, 0.3 * truth);
   }
 }
