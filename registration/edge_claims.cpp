@@ -104,7 +104,6 @@ ClaimVerdict judge_claims(const SurfaceSystem& system, const Eigen::MatrixXd& in
       if (a < b && claims[a].row.offset == claims[b].row.offset &&
           std::abs(claims[a].arc_mm - claims[b].arc_mm) < near_mm)
         alternatives.push_back(judge.without({a, b}));
-  std::erase_if(alternatives, [](const Alternative& a) { return a.gain < kLeastLogOdds; });
   std::stable_sort(alternatives.begin(), alternatives.end(),
                    [](const Alternative& a, const Alternative& b) { return a.gain > b.gain; });
   ClaimVerdict verdict;

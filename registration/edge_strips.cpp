@@ -87,7 +87,7 @@ void EdgeStrips::set_row(const Point& point, SurfaceSystem::Row& row) const {
 
 bool EdgeStrips::counts(std::size_t i) const {
   const Point& p = points_[i];
-  return p.weight > 0.0 && edges_[p.edge].bins.seen[edges_[p.edge].bins.bin_of(p.foot.arc_mm)];
+  return p.weight > 0.0 && edges_[p.edge].bins.seen_at(p.foot.arc_mm);
 }
 
 void EdgeStrips::add(std::size_t begin, std::size_t end, const std::vector<double>& offset_mm, double tau_mm,
@@ -106,23 +106,19 @@ void EdgeStrips::add(std::size_t begin, std::size_t end, const std::vector<doubl
   }
 }
 
-double EdgeStrips::resistance(const Eigen::VectorXd& move, const std::vector<double>& offset_mm,
-                              double tau_mm, double stray_ratio,
+double EdgeStrips::resistance(const SurfaceSystem& system, const Eigen::VectorXd& move,
+                              const std::vector<double>& offset_mm, double tau_mm, double stray_ratio,
                               std::span<const std::size_t> without_pairs) const {
   const EdgeSupport support{tau_mm, strip_mm_, stray_ratio};
-  const Eigen::Index nodes = move.size() - static_cast<Eigen::Index>(edges_.size());
+  SurfaceSystem::Row row;
   double sum = 0.0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Point& p = points_[i];
     if (!counts(i) || stray_[i] ||
         std::find(without_pairs.begin(), without_pairs.end(), i) != without_pairs.end())
       continue;
-    const ContourStation& station = edges_[p.edge].stations[p.foot.station];
-    Eigen::Vector3d moved_mm = Eigen::Vector3d::Zero();
-    for (std::size_t k = 0; k < station.row.node.size(); ++k)
-      moved_mm += station.row.weight[k][BasisRow::kValue] * move.segment<3>(3 * station.row.node[k]);
-    const double offset_moved_mm = move[nodes + static_cast<Eigen::Index>(p.edge)];
-    const double by_mm = -moved_mm.dot(edges_[p.edge].inward[p.foot.station]) - offset_moved_mm;
+    set_row(p, row);
+    const double by_mm = system.dot(row, move);
     const double inside_mm = p.foot.across_mm - offset_mm[p.edge];
     const EdgeSupport::Pull pull = support.at(inside_mm);
     sum += p.weight * (support.whole_cost(inside_mm + by_mm) - support.whole_cost(inside_mm) -
@@ -136,7 +132,7 @@ double EdgeStrips::void_mm2(double from_mm, double to_mm) const {
   for (const Edge& edge : edges_)
     for (std::size_t k = 0; k + 1 < edge.stations.size(); ++k) {
       const ContourStation& station = edge.stations[k];
-      if (!edge.bins.seen[edge.bins.bin_of(station.arc_mm)]) continue;
+      if (!edge.bins.seen_at(station.arc_mm)) continue;
       const double fan = std::max(0.0, station.fan_per_mm);  // the void narrows towards the middle of a hole
       const double end_mm = fan * to_mm > 1.0 ? std::max(from_mm, 1.0 / fan) : to_mm;
       const double width_mm = (end_mm - from_mm) * (1.0 - 0.5 * fan * (end_mm + from_mm));
@@ -149,8 +145,7 @@ std::size_t EdgeStrips::points_in_void(double from_mm, double to_mm, double heig
   return static_cast<std::size_t>(std::count_if(points_.begin(), points_.end(), [&](const Point& p) {
     const double outside_mm = -p.foot.across_mm;
     return p.foot.distance_mm < reach_mm_ && outside_mm > from_mm && outside_mm < to_mm &&
-           std::abs(p.foot.height_mm) < height_mm &&
-           edges_[p.edge].bins.seen[edges_[p.edge].bins.bin_of(p.foot.arc_mm)];
+           std::abs(p.foot.height_mm) < height_mm && edges_[p.edge].bins.seen_at(p.foot.arc_mm);
   }));
 }
 

@@ -38,10 +38,10 @@ class EdgeStrips {
   /// The points that pull their edge outward.
   [[nodiscard]] std::vector<EdgeClaim> claims(const std::vector<double>& offset_mm, double tau_mm,
                                               double stray_ratio) const;
-  /// What the points cost more at the fit moved by `move` (of the unknowns) than their tangents say, without
-  /// some pairs.
-  [[nodiscard]] double resistance(const Eigen::VectorXd& move, const std::vector<double>& offset_mm,
-                                  double tau_mm, double stray_ratio,
+  /// What the points cost more at the fit moved by `move` (of the system's unknowns) than their tangents say,
+  /// without some pairs.
+  [[nodiscard]] double resistance(const SurfaceSystem& system, const Eigen::VectorXd& move,
+                                  const std::vector<double>& offset_mm, double tau_mm, double stray_ratio,
                                   std::span<const std::size_t> without_pairs) const;
   /// Density of strays over that of the material, near the surface and beyond the edges, where there is no
   /// material: of what lies level with it farther out than half a strip, or of what stands above and below it

@@ -18,6 +18,7 @@ struct SeenBins {
   double density_per_mm2 = 0.0;  ///< of the strip, median over the bins
 
   [[nodiscard]] std::size_t bin_of(double arc_mm) const;
+  [[nodiscard]] bool seen_at(double arc_mm) const { return seen[bin_of(arc_mm)] != 0; }
 };
 
 /// The strip of material beside an edge.

@@ -15,8 +15,7 @@ constexpr double kCosSameSheet = 0.2;
 constexpr double kQuadraticRidge = 1e-6;  // of the moment matrix, on the second-order terms only
 constexpr double kWorstPivotRatio = 1e-9;
 constexpr std::size_t kFewestNodes = 6;
-constexpr double kMostCellsASide =
-    100.0;  // contours may lie far apart; cells wider than the radius serve as well
+constexpr double kMostCellsASide = 100.0;  // contours may lie far apart; wider cells serve as well
 
 /// Wendland's C2 function; 1 at 0, 0 from q = 1 on.
 double wendland_c2(double q) {

@@ -108,12 +108,12 @@ class SurfaceFitter {
     const Eigen::Index n = system.gradient.size();
     fit_.covariance =
         Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>(system.information).solve(Eigen::MatrixXd::Identity(n, n));
-    const double ratio = stray_ratio();
+    const double ratio = strips_->stray_ratio();
     const std::vector<EdgeClaim> claims = strips_->claims(fit_.offset_mm, tau_mm_, ratio);
     const auto resistance = [&](const Eigen::VectorXd& move, std::span<const std::size_t> without) {
       std::vector<std::size_t> pairs;
       for (const std::size_t a : without) pairs.push_back(claims[a].pair);
-      return strips_->resistance(move, fit_.offset_mm, tau_mm_, ratio, pairs);
+      return strips_->resistance(system, move, fit_.offset_mm, tau_mm_, ratio, pairs);
     };
     const ClaimVerdict verdict = judge_claims(system, fit_.covariance, claims, kClaimsNearMm, resistance);
     for (const std::size_t pair : verdict.strays) strips_->call_stray(pair);
@@ -162,8 +162,6 @@ class SurfaceFitter {
                         });
   }
 
-  double stray_ratio() const { return strips_->stray_ratio(); }
-
   /// What a point is worth: its noise, and what nodes so far apart cannot follow of a bent surface. That is
   /// alike for all points between the same nodes, so more of them do not average it away; trusted by their
   /// noise alone, many points trade it for a slide in the surface, where only the edge holds the field.
@@ -173,11 +171,11 @@ class SurfaceFitter {
   }
 
   SurfaceSystem assemble() const {
-    const double sigma_mm = point_sigma_mm();
+    const double sigma_mm = point_sigma_mm(), stray_ratio = strips_->stray_ratio();
     SurfaceSystem system =
         summed(pairs_.size(), [&](std::size_t begin, std::size_t end, SurfaceSystem& part) {
           add_surface(pairs_, begin, end, sigma_mm, scale_mm_, part);
-          strips_->add(begin, end, fit_.offset_mm, tau_mm_, stray_ratio(), part);
+          strips_->add(begin, end, fit_.offset_mm, tau_mm_, stray_ratio, part);
         });
     system += summed(sheet_.size(), [&](std::size_t begin, std::size_t end, SurfaceSystem& part) {
       for (std::size_t i = begin; i < end; ++i) sheet_[i].add(fit_.shift_mm, prior_, part);

@@ -33,7 +33,7 @@ struct Strip {
         SurfacePair pair;
         pair.p_mm = curve.point_mm(s_mm) + g_mm * inward;
         if (std::abs(curve.nearest(pair.p_mm).distance_mm - std::abs(g_mm)) > 1e-6)
-          continue;  // a corner's fan
+          continue;  // straight sides alone: uniform along and across is uniform in area there
         pair.normal = curve.normal(s_mm);
         pair.on_face = g_mm > 0.0;
         pairs.push_back(pair);
@@ -80,7 +80,7 @@ TEST(EdgeStrips, ResistanceIsWhatTheTangentsLeaveOut) {
       if (point.weight > 0.0)
         change += point.weight * (cost(point.foot.across_mm - by_mm) - cost(point.foot.across_mm));
     const double tangent = tangents.gradient.dot(move) + 0.5 * move.dot(curvature * move);
-    const double resistance = strip.strips.resistance(move, {0.0}, kTauMm, stray_ratio, {});
+    const double resistance = strip.strips.resistance(tangents, move, {0.0}, kTauMm, stray_ratio, {});
     EXPECT_NEAR(tangent + resistance, change, 1e-9 + 0.01 * std::abs(change)) << by_mm;
   }
 }
