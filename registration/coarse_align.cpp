@@ -210,9 +210,12 @@ class Search {
                                     std::size_t refined) const {
     const ScanModel light = hypothesis(scan, flip, mirror);
     const NearestPoints edges(light.edge_mm);
-    std::vector<std::pair<double, RigidMotion>> starts;
-    for (const LoopMatch& match : match_loops(loops_, light.loops))
-      starts.emplace_back(score(light, edges, match.scan_from_cad), match.scan_from_cad);
+    const std::vector<LoopMatch> matches = match_loops(loops_, light.loops);
+    std::vector<std::pair<double, RigidMotion>> starts(matches.size());
+    parallel_for(matches.size(), 1, options_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        starts[i] = {score(light, edges, matches[i].scan_from_cad), matches[i].scan_from_cad};
+    });
     std::stable_sort(starts.begin(), starts.end(), [](auto& a, auto& b) { return a.first < b.first; });
     if (starts.size() > refined) starts.resize(refined);
     std::vector<Candidate> found(starts.size());

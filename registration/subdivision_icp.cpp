@@ -21,13 +21,20 @@ constexpr double kCoveredRatio = 0.4;     // of a segment's arc bins, for its mo
 constexpr double kBinMm = 5.0;
 constexpr double kFarthestStartMm =
     60.0;  // edge points farther from the rigidly placed contour are another edge's
-constexpr std::size_t kChunk = 512;
+constexpr std::size_t kChunk = 512, kEdgeChunk = 64;
 
 /// Scan points beside the contour that hold the segments' tilt.
 struct StabilityPoint {
   std::size_t scan_index = 0;
   double arc_mm = 0.0;
   std::int32_t triangle = -1;  // of the last round
+};
+
+/// A scan edge point as a segment's motion puts it, and its foot on the contour.
+struct PairedEdge {
+  std::size_t segment = 0;
+  Eigen::Vector3d x_mm = Eigen::Vector3d::Zero();  // CAD frame
+  EdgePair pair;
 };
 
 double log_angle(const RigidMotion& motion, Eigen::Vector3d& turn) {
@@ -51,6 +58,8 @@ class FootFit {
     SegmentFit start;
     start.scan_from_cad = rigid;
     fits_.assign(subdivision_.segments().size(), start);
+    for (const Segment& segment : subdivision_.segments())
+      pivots_mm_.push_back(curve_.point_mm(curve_.wrap_mm(0.5 * (segment.begin_mm + segment.end_mm))));
     sigma_normal_mm_ = std::max(scan.noise_sigma_mm, kMisfitSigmaMm);
     choose_stability_points(rigid.inverse());
     start_scale_mm_ = start_scale_mm(rigid.inverse());
@@ -132,14 +141,9 @@ class FootFit {
     const double angle_rad = log_angle(apart, turn);
     RigidMotion middle = before;
     if (angle_rad > 0.0) middle.rotate(Eigen::AngleAxisd(0.5 * angle_rad, turn / angle_rad));
-    const Eigen::Vector3d p_scan_mm = fits_[z].scan_from_cad * pivot(z);
+    const Eigen::Vector3d p_scan_mm = fits_[z].scan_from_cad * pivots_mm_[z];
     middle.translation() = 0.5 * (before * p_scan_mm + after * p_scan_mm) - middle.linear() * p_scan_mm;
     return middle;
-  }
-
-  Eigen::Vector3d pivot(std::size_t z) const {
-    const Segment& segment = subdivision_.segments()[z];
-    return curve_.point_mm(curve_.wrap_mm(0.5 * (segment.begin_mm + segment.end_mm)));
   }
 
   /// One round over all segments; returns the rms across the contour.
@@ -177,28 +181,40 @@ class FootFit {
     const double across_weight = 1.0 / (data_.sigma_across_mm * data_.sigma_across_mm);
     const double normal_weight = 1.0 / (sigma_normal_mm_ * sigma_normal_mm_);
     const double reach_mm = 3.0 * std::max(across_scale, scan_.spacing_mm);
+    std::vector<std::vector<PairedEdge>> paired(data_.points_mm.size());
+    parallel_for(paired.size(), kEdgeChunk, options_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) paired[i] = pairs_of(i, current, reach_mm);
+    });
     std::vector<double> segment_cost(fits_.size(), 0.0), segment_weight(fits_.size(), 0.0);
-    for (std::size_t i = 0; i < data_.points_mm.size(); ++i) {
-      const Eigen::Vector3d& e = data_.points_mm[i];
-      for (const int index : segments_of(i, current, reach_mm)) {
-        const std::size_t z = static_cast<std::size_t>(index);
-        const EdgePair pair = pair_edge(cad_, current[z] * e, 2.0 * reach_mm);
-        if (pair.contour != contour_) continue;
+    for (const std::vector<PairedEdge>& pairs : paired)
+      for (const auto& [z, x_mm, pair] : pairs) {
         const double robust = geman_mcclure_weight(pair.across_mm * pair.across_mm, across_scale) *
                               geman_mcclure_weight(pair.normal_mm * pair.normal_mm, normal_scale);
-        const Eigen::Vector3d x = current[z] * e - pivot(z);
+        const Eigen::Vector3d x = x_mm - pivots_mm_[z];
         systems[z].add(x, pair.across, pair.across_mm, robust * across_weight);
         systems[z].add(x, pair.normal, pair.normal_mm, robust * normal_weight);
         segment_cost[z] += robust * pair.across_mm * pair.across_mm;
         segment_weight[z] += robust;
         if (robust > 0.25) mark_seen(z, pair.foot.arc_mm, seen[z]);
       }
-    }
     for (std::size_t z = 0; z < fits_.size(); ++z) {
       fits_[z].rms_mm = segment_weight[z] > 0.0 ? std::sqrt(segment_cost[z] / segment_weight[z]) : 0.0;
       cost += segment_cost[z];
       weight += segment_weight[z];
     }
+  }
+
+  /// Edge point i beside the contour, once for each segment that it belongs to.
+  std::vector<PairedEdge> pairs_of(std::size_t i, const std::vector<RigidMotion>& current,
+                                   double reach_mm) const {
+    std::vector<PairedEdge> pairs;
+    for (const int index : segments_of(i, current, reach_mm)) {
+      const std::size_t z = static_cast<std::size_t>(index);
+      const Eigen::Vector3d x_mm = current[z] * data_.points_mm[i];
+      const EdgePair pair = pair_edge(cad_, x_mm, 2.0 * reach_mm);
+      if (pair.contour == contour_) pairs.push_back({z, x_mm, pair});
+    }
+    return pairs;
   }
 
   void mark_seen(std::size_t z, double arc_mm, std::vector<char>& bins) {
@@ -238,7 +254,7 @@ class FootFit {
       if (std::abs(foot.normal.dot(cad_from_scan.linear() * scan_.normals[sp.scan_index])) < kCosNormalsAgree)
         continue;
       const double residual_mm = foot.normal.dot(x - foot.foot_mm);
-      system.add(x - pivot(z), foot.normal, residual_mm,
+      system.add(x - pivots_mm_[z], foot.normal, residual_mm,
                  weight * geman_mcclure_weight(residual_mm * residual_mm, scale_mm));
     }
   }
@@ -253,9 +269,9 @@ class FootFit {
     Eigen::Vector3d turn;
     log_angle(off, turn);
     Eigen::Matrix<double, 6, 1> residual;
-    residual << turn, off * pivot(z) - pivot(z);
+    residual << turn, off * pivots_mm_[z] - pivots_mm_[z];
     system.gradient += prior.cwiseProduct(residual);
-    return motion_of(system.solve(prior), pivot(z)) * cad_from_scan;
+    return motion_of(system.solve(prior), pivots_mm_[z]) * cad_from_scan;
   }
 
   const CadModel& cad_;
@@ -266,6 +282,7 @@ class FootFit {
   const SubdivisionIcpOptions& options_;
   Subdivision subdivision_;
   std::vector<SegmentFit> fits_;
+  std::vector<Eigen::Vector3d> pivots_mm_;  // of each segment: what its turns are about, CAD frame
   std::vector<std::vector<StabilityPoint>> stability_;
   double sigma_normal_mm_ = 0.0, start_scale_mm_ = 1.0, anneal_ = 1.0;
 };

@@ -1,25 +1,13 @@
 #include "acquisition/geometry/polyline.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "acquisition/types/error.hpp"
 
 namespace arris {
-namespace {
-
-constexpr int kLeafChords = 4;
-constexpr std::size_t kDeepestTree = 40;  // halves down from the most chords an int counts
-constexpr double kNoDistance = std::numeric_limits<double>::infinity();
-
-double box_distance2_mm2(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
-                         const Eigen::Vector3d& query_mm) {
-  return (low - query_mm).cwiseMax(query_mm - high).cwiseMax(0.0).squaredNorm();
-}
-
-}  // namespace
+namespace {}  // namespace
 
 Curve::Curve(const Contour& contour) : contour_(contour) {
   const std::size_t count = contour_.points_mm.size();
@@ -35,40 +23,23 @@ Curve::Curve(const Contour& contour) : contour_(contour) {
     throw Error(Fault::kBug, "Curve: contour " + std::to_string(contour_.id) + " has " +
                                  std::to_string(count) +
                                  " points and no length; need two distinct finite points");
-  boxes_.reserve(2 * segments / kLeafChords + 2);
-  build(0, static_cast<int>(segments));
+  std::vector<Eigen::AlignedBox3d> boxes_mm;
+  for (std::size_t i = 0; i < segments; ++i) {
+    boxes_mm.emplace_back(contour_.points_mm[i]);
+    boxes_mm.back().extend(end_of(i));
+  }
+  tree_ = BoxTree(boxes_mm);
+  std::int32_t chord = 0;
+  for (std::size_t k = 0; k < segments; ++k) {
+    const double begin_mm = length_mm() * static_cast<double>(k) / static_cast<double>(segments);
+    while (arc_mm_[static_cast<std::size_t>(chord) + 1] <= begin_mm) ++chord;
+    chord_at_.push_back(chord);
+  }
 }
 
 const Eigen::Vector3d& Curve::end_of(std::size_t segment) const {
   return segment + 1 < contour_.points_mm.size() ? contour_.points_mm[segment + 1]
                                                  : contour_.points_mm.front();
-}
-
-int Curve::build(int first, int last) {
-  const int id = static_cast<int>(boxes_.size());
-  boxes_.emplace_back();
-  Box box;
-  box.first = first;
-  box.last = last;
-  if (last - first <= kLeafChords) {
-    box.low = box.high = contour_.points_mm[static_cast<std::size_t>(first)];
-    for (int i = first; i < last; ++i) {
-      const Eigen::Vector3d& start_mm = contour_.points_mm[static_cast<std::size_t>(i)];
-      const Eigen::Vector3d& end_mm = end_of(static_cast<std::size_t>(i));
-      box.low = box.low.cwiseMin(start_mm).cwiseMin(end_mm);
-      box.high = box.high.cwiseMax(start_mm).cwiseMax(end_mm);
-    }
-  } else {
-    const int middle = first + (last - first) / 2;
-    box.left = build(first, middle);
-    box.right = build(middle, last);
-    const Box& left = boxes_[static_cast<std::size_t>(box.left)];
-    const Box& right = boxes_[static_cast<std::size_t>(box.right)];
-    box.low = left.low.cwiseMin(right.low);
-    box.high = left.high.cwiseMax(right.high);
-  }
-  boxes_[static_cast<std::size_t>(id)] = box;
-  return id;
 }
 
 double Curve::wrap_mm(double arc_mm) const {
@@ -88,10 +59,12 @@ double Curve::arc_between_mm(double from_mm, double to_mm) const {
 
 Curve::Locus Curve::locate(double arc_mm) const {
   const double s_mm = wrap_mm(arc_mm);
-  // The chord that starts at or before s and has length; at the far end, the last chord that has length.
-  const auto after = s_mm < length_mm() ? std::upper_bound(arc_mm_.begin(), arc_mm_.end(), s_mm)
-                                        : std::lower_bound(arc_mm_.begin(), arc_mm_.end(), s_mm);
-  const auto segment = static_cast<std::size_t>(after - arc_mm_.begin()) - 1;
+  // The last chord that begins at or before s; at the far end, the last that has length.
+  const auto steps = static_cast<double>(chord_at_.size());
+  auto segment = static_cast<std::size_t>(
+      chord_at_[static_cast<std::size_t>(std::min(steps - 1.0, s_mm / length_mm() * steps))]);
+  while (segment + 2 < arc_mm_.size() && arc_mm_[segment + 1] <= s_mm) ++segment;
+  while (segment > 0 && (arc_mm_[segment] > s_mm || arc_mm_[segment] == length_mm())) --segment;
   const double ratio = (s_mm - arc_mm_[segment]) / (arc_mm_[segment + 1] - arc_mm_[segment]);
   return {segment, std::clamp(ratio, 0.0, 1.0)};
 }
@@ -117,8 +90,18 @@ Eigen::Vector3d Curve::normal(double arc_mm) const {
   return between.norm() > 1e-9 ? between.normalized() : start;
 }
 
-void Curve::search(const Eigen::Vector3d& query_mm, double& best_mm2, CurveFoot& best) const {
-  const auto try_chord = [&](int i) {
+CurveFoot Curve::nearest(const Eigen::Vector3d& query_mm) const {
+  CurveFoot best = nearest_within(query_mm, std::numeric_limits<double>::infinity());
+  if (best.segment < 0) throw Error(Fault::kBug, "Curve::nearest: the query is not finite");
+  return best;
+}
+
+CurveFoot Curve::nearest_within(const Eigen::Vector3d& query_mm, double reach_mm) const {
+  CurveFoot best;
+  best.distance_mm = reach_mm;
+  if (!query_mm.allFinite()) return best;
+  double best_mm2 = reach_mm * reach_mm;
+  tree_.search(query_mm, best_mm2, [&](std::int32_t i) {
     const Eigen::Vector3d& start_mm = contour_.points_mm[static_cast<std::size_t>(i)];
     const Eigen::Vector3d chord_mm = end_of(static_cast<std::size_t>(i)) - start_mm;
     const double chord_mm2 = chord_mm.squaredNorm();
@@ -126,53 +109,15 @@ void Curve::search(const Eigen::Vector3d& query_mm, double& best_mm2, CurveFoot&
         chord_mm2 > 0.0 ? std::clamp(chord_mm.dot(query_mm - start_mm) / chord_mm2, 0.0, 1.0) : 0.0;
     const Eigen::Vector3d foot_mm = start_mm + ratio * chord_mm;
     const double distance_mm2 = (query_mm - foot_mm).squaredNorm();
-    if (!(distance_mm2 < best_mm2) && !(distance_mm2 == best_mm2 && i < best.segment)) return;
-    best_mm2 = distance_mm2;
-    best.segment = i;
-    best.ratio = ratio;
-    best.foot_mm = foot_mm;
-  };
-  // Nearer child first; a box as far as the best is still opened, so that the lower chord wins a tie. A box's
-  // distance is worked out once, by its parent.
-  struct Open {
-    int box;
-    double distance_mm2;
-  };
-  std::array<Open, 2 * kDeepestTree> stack;
-  std::size_t open = 0;
-  stack[open++] = {0, 0.0};
-  while (open > 0) {
-    const Open at = stack[--open];
-    if (at.distance_mm2 > best_mm2 * (1.0 + 1e-12)) continue;
-    const Box& box = boxes_[static_cast<std::size_t>(at.box)];
-    if (box.left < 0) {
-      for (int i = box.first; i < box.last; ++i) try_chord(i);
-      continue;
+    if (distance_mm2 < best_mm2 || (distance_mm2 == best_mm2 && i < best.segment)) {
+      best_mm2 = distance_mm2;
+      best.segment = i;
+      best.ratio = ratio;
+      best.foot_mm = foot_mm;
     }
-    const Box& left = boxes_[static_cast<std::size_t>(box.left)];
-    const Box& right = boxes_[static_cast<std::size_t>(box.right)];
-    const Open to_left{box.left, box_distance2_mm2(left.low, left.high, query_mm)};
-    const Open to_right{box.right, box_distance2_mm2(right.low, right.high, query_mm)};
-    const bool right_first = to_right.distance_mm2 < to_left.distance_mm2;
-    stack[open++] = right_first ? to_left : to_right;
-    stack[open++] = right_first ? to_right : to_left;
-  }
-}
-
-CurveFoot Curve::nearest(const Eigen::Vector3d& query_mm) const {
-  CurveFoot best = nearest_within(query_mm, kNoDistance);
-  if (best.segment < 0) throw Error(Fault::kBug, "Curve::nearest: the query is not finite");
-  return best;
-}
-
-CurveFoot Curve::nearest_within(const Eigen::Vector3d& query_mm, double reach_mm) const {
-  CurveFoot best;
-  double best_mm2 = reach_mm * reach_mm;
-  search(query_mm, best_mm2, best);
-  if (best.segment < 0) {
-    best.distance_mm = reach_mm;
-    return best;
-  }
+    return best_mm2;
+  });
+  if (best.segment < 0) return best;
   const auto segment = static_cast<std::size_t>(best.segment);
   best.distance_mm = std::sqrt(best_mm2);
   best.arc_mm = wrap_mm(arc_mm_[segment] + best.ratio * (arc_mm_[segment + 1] - arc_mm_[segment]));

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "acquisition/geometry/box_tree.hpp"
 #include "acquisition/types/contour.hpp"
 
 namespace arris {
@@ -17,7 +18,7 @@ struct CurveFoot {
 };
 
 /// Arc-length view of a contour: position, tangent and normal at s, nearest foot of a point.
-/// Nearest foot by a bounding-box tree over the chords: O(log n) a query; thread-safe after construction.
+/// Nearest foot by a BoxTree over the chords: O(log n) a query; thread-safe after construction.
 class Curve {
  public:
   /// Needs at least two distinct points; throws Error(kBug) otherwise. Copies the contour.
@@ -43,22 +44,17 @@ class Curve {
   [[nodiscard]] CurveFoot nearest_within(const Eigen::Vector3d& query_mm, double reach_mm) const;
 
  private:
-  struct Box {
-    Eigen::Vector3d low, high;
-    int left = -1, right = -1, first = 0, last = 0;
-  };
   struct Locus {
     std::size_t segment;
     double ratio;
   };
-  int build(int first, int last);
-  void search(const Eigen::Vector3d& query_mm, double& best_mm2, CurveFoot& best) const;
   [[nodiscard]] Locus locate(double arc_mm) const;
   [[nodiscard]] const Eigen::Vector3d& end_of(std::size_t segment) const;
 
   Contour contour_;
-  std::vector<double> arc_mm_;  // arc length at each point, then the total length
-  std::vector<Box> boxes_;
+  std::vector<double> arc_mm_;          // arc length at each point, then the total length
+  std::vector<std::int32_t> chord_at_;  // of even steps of arc: the last chord that begins at or before it
+  BoxTree tree_;
 };
 
 /// Equally spaced points (first point kept), at most step_mm apart; normals interpolated and renormalised.

@@ -1,22 +1,15 @@
 #include "acquisition/geometry/surface_query.hpp"
 
-#include <embree3/rtcore.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "acquisition/geometry/box_tree.hpp"
 #include "acquisition/geometry/mesh_normals.hpp"
-#include "acquisition/types/error.hpp"
 
 namespace arris {
 namespace {
 
-// Rounding to float moves vertices, boxes and the query by at most 2^-24 of their size each, the box distance
-// by a few times that. Sixteen roundings are allowed for, so that the float tree never hides the nearest
-// triangle.
-constexpr double kFloatSlackRatio = 1e-6;
 // A foot this near to an edge, in parts of the triangle's longest edge, is on it: the edge's normal decides
 // the side.
 constexpr double kOnEdgeRatio = 1e-9;
@@ -68,37 +61,18 @@ Foot nearest_on_triangle(const std::array<Eigen::Vector3d, 3>& corners_mm, const
   return answer(b, std::clamp(vc / total, 0.0, 1.0 - b));
 }
 
-struct Release {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-using Device = std::unique_ptr<RTCDeviceTy, Release>;
-using Scene = std::unique_ptr<RTCSceneTy, Release>;
-
-[[noreturn]] void throw_embree(RTCDevice device) {
-  throw Error(Fault::kBug,
-              "Embree error " + std::to_string(rtcGetDeviceError(device)) + " while building a tree");
-}
-
-float float_above(double value) {
-  constexpr double kMost = std::numeric_limits<float>::max();
-  if (!(value < 1e18)) return std::numeric_limits<float>::infinity();  // its square must stay a float
-  return std::nextafter(static_cast<float>(std::min(value, kMost)), std::numeric_limits<float>::infinity());
-}
-
 }  // namespace
 
 struct SurfaceQuery::Impl {
   explicit Impl(const TriangleMesh& mesh_) : mesh(mesh_), normals(mesh_normals(mesh_)) {
-    if (std::find(normals.degenerate.begin(), normals.degenerate.end(), 0) == normals.degenerate.end())
-      return;
-    Eigen::AlignedBox3d box;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-      if (normals.degenerate[t] == 0)
-        for (const Eigen::Vector3d& corner_mm : corners(t)) box.extend(corner_mm);
-    centre_mm = box.center();
-    half_extent_mm = 0.5 * box.sizes().maxCoeff();
-    build();
+    std::vector<Eigen::AlignedBox3d> boxes_mm;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (normals.degenerate[t] != 0) continue;
+      triangle_of.push_back(static_cast<std::int32_t>(t));
+      boxes_mm.emplace_back();
+      for (const Eigen::Vector3d& corner_mm : corners(t)) boxes_mm.back().extend(corner_mm);
+    }
+    tree = BoxTree(boxes_mm);
   }
 
   [[nodiscard]] std::array<Eigen::Vector3d, 3> corners(std::size_t t) const {
@@ -107,42 +81,14 @@ struct SurfaceQuery::Impl {
             mesh.vertices_mm[static_cast<std::size_t>(c)]};
   }
 
-  void build();
   [[nodiscard]] SurfacePoint describe(std::size_t triangle, const Foot& foot,
                                       const Eigen::Vector3d& query_mm) const;
 
   TriangleMesh mesh;
   MeshNormals normals;
-  Eigen::Vector3d centre_mm = Eigen::Vector3d::Zero();
-  double half_extent_mm = 0.0;
   std::vector<std::int32_t> triangle_of;  // mesh triangle of each triangle in the tree
-  Device device;
-  Scene scene;
+  BoxTree tree;
 };
-
-void SurfaceQuery::Impl::build() {
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    if (normals.degenerate[t] == 0) triangle_of.push_back(static_cast<std::int32_t>(t));
-  device.reset(rtcNewDevice(nullptr));
-  if (!device) throw_embree(nullptr);
-  scene.reset(rtcNewScene(device.get()));
-  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices_mm.size()));
-  auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), triangle_of.size()));
-  if (vertices == nullptr || indices == nullptr) throw_embree(device.get());
-  for (const Eigen::Vector3d& vertex_mm : mesh.vertices_mm)
-    for (int axis = 0; axis < 3; ++axis) *vertices++ = static_cast<float>(vertex_mm[axis] - centre_mm[axis]);
-  for (const std::int32_t t : triangle_of)
-    for (const std::int32_t v : mesh.triangles[static_cast<std::size_t>(t)])
-      *indices++ = static_cast<unsigned>(v);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene.get(), geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene.get());
-  if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE) throw_embree(device.get());
-}
 
 SurfacePoint SurfaceQuery::Impl::describe(std::size_t triangle, const Foot& foot,
                                           const Eigen::Vector3d& query_mm) const {
@@ -180,43 +126,25 @@ SurfacePoint SurfaceQuery::Impl::describe(std::size_t triangle, const Foot& foot
 
 namespace {
 
-// What one traversal of the tree carries along; Embree calls visit() for each triangle that may be nearer.
-struct Search {
-  const std::vector<std::int32_t>& triangle_of;
+/// The nearest triangle of those looked at so far.
+struct Nearest {
   const TriangleMesh& mesh;
   const Eigen::Vector3d& query_mm;
-  double slack_mm;
   double limit2_mm2;
   std::int32_t triangle = -1;
   Foot foot{};
 
-  /// Keeps the triangle if it is the nearest so far.
-  bool look_at(std::int32_t t) {
+  void look_at(std::int32_t t) {
     const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(t)];
     const Foot candidate = nearest_on_triangle(
         {mesh.vertices_mm[static_cast<std::size_t>(a)], mesh.vertices_mm[static_cast<std::size_t>(b)],
          mesh.vertices_mm[static_cast<std::size_t>(c)]},
         query_mm);
-    if (!(candidate.distance2_mm2 <= limit2_mm2)) return false;
-    if (candidate.distance2_mm2 == limit2_mm2 && triangle >= 0 && t > triangle) return false;
+    if (!(candidate.distance2_mm2 <= limit2_mm2)) return;
+    if (candidate.distance2_mm2 == limit2_mm2 && triangle >= 0 && t > triangle) return;
     limit2_mm2 = candidate.distance2_mm2;
     triangle = t;
     foot = candidate;
-    return true;
-  }
-
-  /// Within which the tree may still hold a nearer triangle.
-  [[nodiscard]] float radius() const {
-    return float_above(std::sqrt(limit2_mm2) * (1.0 + kFloatSlackRatio) + slack_mm);
-  }
-
-  static bool visit(RTCPointQueryFunctionArguments* args) {
-    Search& search = *static_cast<Search*>(args->userPtr);
-    if (!search.look_at(search.triangle_of[args->primID])) return false;
-    const float radius = search.radius();
-    if (!(radius < args->query->radius)) return false;
-    args->query->radius = radius;
-    return true;
   }
 };
 
@@ -227,22 +155,15 @@ SurfaceQuery::SurfaceQuery(const TriangleMesh& mesh) : impl_(std::make_shared<co
 SurfacePoint SurfaceQuery::closest(const Eigen::Vector3d& query_mm, double max_distance_mm,
                                    std::int32_t hint) const {
   const Impl& impl = *impl_;
-  if (!impl.scene || !query_mm.allFinite() || !(max_distance_mm >= 0.0)) return {};
-  const Eigen::Vector3d local_mm = query_mm - impl.centre_mm;
-  const double slack_mm = kFloatSlackRatio * (local_mm.cwiseAbs().maxCoeff() + impl.half_extent_mm);
-  Search search{impl.triangle_of, impl.mesh, query_mm, slack_mm, max_distance_mm * max_distance_mm};
-  if (hint >= 0) search.look_at(hint);
-  RTCPointQuery query{};
-  query.x = static_cast<float>(local_mm.x());
-  query.y = static_cast<float>(local_mm.y());
-  query.z = static_cast<float>(local_mm.z());
-  query.time = 0.0F;
-  query.radius = search.radius();
-  RTCPointQueryContext context;
-  rtcInitPointQueryContext(&context);
-  rtcPointQuery(impl.scene.get(), &query, &context, &Search::visit, &search);
-  if (search.triangle < 0) return {};
-  return impl.describe(static_cast<std::size_t>(search.triangle), search.foot, query_mm);
+  if (!query_mm.allFinite() || !(max_distance_mm >= 0.0)) return {};
+  Nearest nearest{impl.mesh, query_mm, max_distance_mm * max_distance_mm};
+  if (hint >= 0) nearest.look_at(hint);
+  impl.tree.search(query_mm, nearest.limit2_mm2, [&](std::int32_t item) {
+    nearest.look_at(impl.triangle_of[static_cast<std::size_t>(item)]);
+    return nearest.limit2_mm2;
+  });
+  if (nearest.triangle < 0) return {};
+  return impl.describe(static_cast<std::size_t>(nearest.triangle), nearest.foot, query_mm);
 }
 
 }  // namespace arris

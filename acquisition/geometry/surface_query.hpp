@@ -19,11 +19,11 @@ struct SurfacePoint {
   bool on_border = false;  ///< the foot lies on a one-face edge: the distance is to an edge, not to the face
 };
 
-/// Nearest point and signed distance to a fixed triangle mesh; exact, thread-safe. Embree inside (float tree
-/// about the mesh's centre, searched with slack for float rounding), every candidate's foot in double;
-/// triangles that tie: the lower index. A foot within 1e-9 of its triangle's longest edge from an edge or
-/// vertex counts as on it. Triangles without area are no target, but pass on the normals beyond them. Sign:
-/// Baerentzen and Aanaes, IEEE TVCG 11(3), 2005: angle-weighted pseudo-normals, so edges never flip it.
+/// Nearest point and signed distance to a fixed triangle mesh; exact, thread-safe. A BoxTree finds the
+/// candidates, every candidate's foot is worked out in double; triangles that tie: the lower index. A foot
+/// within 1e-9 of its triangle's longest edge from an edge or vertex counts as on it. Triangles without area
+/// are no target, but pass on the normals beyond them. Sign: Baerentzen and Aanaes, IEEE TVCG 11(3), 2005:
+/// angle-weighted pseudo-normals, so edges never flip it.
 class SurfaceQuery {
  public:
   /// Copies the mesh. Build O(n log n). Throws Error(kBug) for indices out of range.

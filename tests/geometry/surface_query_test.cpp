@@ -1,5 +1,6 @@
 #include "acquisition/geometry/surface_query.hpp"
 
+#include <embree3/rtcore.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -75,6 +76,79 @@ TEST(SurfaceQuery, IsTheBruteForceDistanceNearAndFar) {
         EXPECT_NEAR((found.foot_mm - query_mm).norm(), found.distance_mm, 1e-9);
         EXPECT_NEAR(std::abs(found.signed_mm), found.distance_mm, 0.0);
       }
+    }
+  }
+}
+
+/// Embree's nearest triangles of a mesh about its origin: a tree that shares nothing with ours.
+class EmbreeTwin {
+ public:
+  explicit EmbreeTwin(const TriangleMesh& mesh) : mesh_(mesh) {
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* xyz = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices_mm.size()));
+    auto* abc = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), mesh.triangles.size()));
+    for (const Eigen::Vector3d& v_mm : mesh.vertices_mm)
+      for (int axis = 0; axis < 3; ++axis) *xyz++ = static_cast<float>(v_mm[axis]);
+    for (const auto& triangle : mesh.triangles)
+      for (const std::int32_t v : triangle) *abc++ = static_cast<unsigned>(v);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene_);
+  }
+  EmbreeTwin(const EmbreeTwin&) = delete;
+  EmbreeTwin& operator=(const EmbreeTwin&) = delete;
+  ~EmbreeTwin() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
+
+  [[nodiscard]] double distance_mm(const Eigen::Vector3d& query_mm) const {
+    Visit visit{mesh_, query_mm, std::numeric_limits<double>::infinity()};
+    RTCPointQuery query{};
+    query.x = static_cast<float>(query_mm.x());
+    query.y = static_cast<float>(query_mm.y());
+    query.z = static_cast<float>(query_mm.z());
+    query.radius = std::numeric_limits<float>::infinity();
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(scene_, &query, &context, &Visit::triangle, &visit);
+    return visit.nearest_mm;
+  }
+
+ private:
+  struct Visit {
+    const TriangleMesh& mesh;
+    const Eigen::Vector3d& query_mm;
+    double nearest_mm;
+    static bool triangle(RTCPointQueryFunctionArguments* args) {
+      Visit& visit = *static_cast<Visit*>(args->userPtr);
+      const auto& [a, b, c] = visit.mesh.triangles[args->primID];
+      const double off_mm =
+          triangle_distance_mm(visit.mesh.vertices_mm[static_cast<std::size_t>(a)],
+                               visit.mesh.vertices_mm[static_cast<std::size_t>(b)],
+                               visit.mesh.vertices_mm[static_cast<std::size_t>(c)], visit.query_mm);
+      if (off_mm >= visit.nearest_mm) return false;
+      visit.nearest_mm = off_mm;
+      args->query->radius = static_cast<float>(off_mm) * (1.0F + 1e-5F) + 1e-3F;  // rounding hides nothing
+      return true;
+    }
+  };
+  const TriangleMesh& mesh_;
+  RTCDevice device_ = rtcNewDevice(nullptr);
+  RTCScene scene_ = rtcNewScene(device_);
+};
+
+TEST(SurfaceQuery, IsEmbreesDistanceOnManyTriangles) {
+  for (const TriangleMesh& mesh : {triangle_soup(20000, 15), sphere_mesh(40.0, 6), sheet_mesh(100.0, 100)}) {
+    const SurfaceQuery surface(mesh);
+    const EmbreeTwin twin(mesh);
+    Random random(16);
+    for (int i = 0; i < 5000; ++i) {
+      const Eigen::Vector3d query_mm = random.in_cube_mm(i % 2 == 0 ? 150.0 : 45.0);
+      EXPECT_NEAR(surface.closest(query_mm).distance_mm, twin.distance_mm(query_mm), 1e-9);
     }
   }
 }
