@@ -19,6 +19,7 @@ constexpr std::size_t kSurfaceSample = 160;
 constexpr std::size_t kEdgeSample = 120;
 constexpr std::size_t kEdgeScored = 2000;      // a thinned edge would score its own gaps, some 5 mm
 constexpr std::size_t kRefined = 4;            // candidates a hypothesis that are refined
+constexpr double kFitsCapRatio = 0.8;          // of the largest distance that scores count
 constexpr double kFreeEigenvalueRatio = 1e-4;  // methods: slippage, Gelfand and Guibas 2003
 constexpr double kEdgeKept = 0.75, kSurfaceKept = 0.9;
 constexpr std::size_t kLoopSample = 12;
@@ -392,6 +393,12 @@ CoarseAlignment coarse_align(const CadModel& cad, const ScanModel& scan, const C
   if (!side_open && best.score_mm > 2.0 * scan.spacing_mm &&
       mirror_excess_mm < kMirrorBetterRatio * beyond_spacing(best.score_mm, scan))
     return call_mirrored();
+  if (best.score_mm > kFitsCapRatio * search.cap_mm()) {  // then every pose is about as bad as another
+    result.reason = "no pose fits: the best one leaves " + millimetres(best.score_mm) +
+                    " mm between scan and part; is it this part, and does the scan show the contour?";
+    result.unit_ratio = unit_that_fits(cad, scan);
+    return result;
+  }
   for (const Candidate& other : proper) {
     if (&other == &best || other.score_mm > 1e299) continue;
     if (other.flip == best.flip && search.same_place(best, other)) continue;
@@ -405,8 +412,6 @@ CoarseAlignment coarse_align(const CadModel& cad, const ScanModel& scan, const C
       result.mirror_ratio < kMirrorOfAmbiguousRatio)
     result.reason += "; the scan's mirror image fits better (" + percent(result.mirror_ratio) +
                      " of the best): was it exported mirrored?";
-  if (result.usable() && best.score_mm > 0.8 * search.cap_mm())
-    result.reason = "no pose fits: the best start leaves " + millimetres(best.score_mm) + " mm";
   if (!result.usable()) result.unit_ratio = unit_that_fits(cad, scan);
   return result;
 }

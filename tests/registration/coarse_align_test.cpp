@@ -150,6 +150,15 @@ TEST(CoarseAlign, HalfTurnOfASymmetricOpeningIsRefused) {
   EXPECT_NE(found.reason.find("two poses"), std::string::npos) << found.reason;
 }
 
+TEST(CoarseAlign, AnotherPartIsSaidToFitNowhereNotToBeAmbiguous) {
+  const Trial trial = scenes::changed_trial(
+      asymmetric(), whole_face(), 5,
+      [](Eigen::Vector3f& p, Eigen::Vector3f&) { p.z() = 0.004F * p.x() * p.x() - 0.004F * p.y() * p.y(); });
+  const CoarseAlignment found = coarse_align(asymmetric_cad(), trial.scan, {});
+  EXPECT_FALSE(found.usable());
+  EXPECT_NE(found.reason.find("no pose fits"), std::string::npos) << found.reason;
+}
+
 TEST(CoarseAlign, InitialPoseIsUsedWhereItIsNearAndNeverAcceptedWrongWhereItIsFar) {
   const PlatePart plate(synthetic::plate_with_rounded_rectangle());
   const CadModel cad = scenes::cad_of(plate);
