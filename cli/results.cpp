@@ -98,13 +98,14 @@ void judge_edge(const Registration& found, RunRecord& record) {
 }  // namespace
 
 void judge_results(const CadModel& cad, const Registration& found, RunRecord& record) {
-  for (std::size_t c = 0; c < cad.contours.size(); ++c)
-    record.contour_errors.push_back(error_along(cad, c, found));
-  if (record.role == "cut")
+  if (record.role == "cut") {
     record.edge_limit_mm = kMissing;  // there is no edge to show
-  else
+  } else {
+    for (std::size_t c = 0; c < cad.contours.size(); ++c)
+      record.contour_errors.push_back(error_along(cad, c, found));
     for (const ContourResult& contour : found.contours)
       record.edge_limit_mm = std::max(record.edge_limit_mm, contour.edge.edge_limit_mm());
+  }
   const double density = std::max(found.density_per_mm2, 1e-12);
   const double near_points =
       std::max(1.0, density * 0.5 * std::numbers::pi * kSurfaceLimitRadiusMm * kSurfaceLimitRadiusMm);

@@ -198,8 +198,10 @@ std::string deviation_section(const RunRecord& record) {
   if (has_data)
     html += tag(
         "p",
-        "Positive: outside the material. Green is exactly the tolerance zone. Hatched: the CAD shows there, "
-        "and the scan has no data. H and L mark the highest and lowest points listed below.");
+        "Positive: outside the material." +
+            std::string(record.surface_profile_mm > 0.0 ? " Green is exactly the tolerance zone." : "") +
+            " Hatched: the CAD shows there, and the scan has no data. H and L mark the highest and lowest "
+            "points listed below.");
   html += picture(deviation_picture(record, Look::kAlong), "scan coloured by deviation, from above", "");
   if (!has_data) return html + tag("p", "No deviation was computed for this run.");
   html += picture(deviation_picture(record, Look::kOblique), "scan coloured by deviation, oblique", "");

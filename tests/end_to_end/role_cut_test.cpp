@@ -59,6 +59,9 @@ TEST(RoleCutRun, PathGoesWhereTheMaterialIsAndTheReportJudgesNoEdge) {
 
   const auto result = nlohmann::json::parse(testing::text_of(job.file("out/result.json")));
   EXPECT_EQ(result.at("results").at("iii_contour_pulled_back").at("judged").at("verdict"), "NOT JUDGED");
+  EXPECT_TRUE(result.at("contour_errors").at("contours").empty()) << result.at("contour_errors");
+  EXPECT_NE(testing::text_of(job.file("out/report.html")).find("no edge to compare with yet"),
+            std::string::npos);
   EXPECT_TRUE(result.at("limits").at("edge_limit_mm").is_null()) << result.at("limits");
   EXPECT_GT(result.at("alignment").at("overlap_ratio").get<double>(), 0.9);
 }
