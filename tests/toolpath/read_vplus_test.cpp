@@ -129,6 +129,12 @@ const Edit kEdits[] = {
     {"MOVES part:here.1", "MOVES part:there", "the location there"},
     {"MOVES part:here.1", "MOVE part here.1", "the end of the line"},
     {"DEPARTS 50", "DEPARTS", "a number"},
+    {"APPRO part:here.1", "APPROS part:there", "the location there"},  // the first move: no pose before it
+    {"APPRO part:here.1, 50", "APPRO part:here.1", "needed ','"},
+    {"APPRO part:here.1, 50", "DEPARTS 50", "a DEPART from a place that is not known"},
+    {"        DEPARTS 50", "        TOOL other\n        DEPARTS 50",
+     "a DEPART from a place that is not known"},
+    {"        BREAK\n        DEPARTS", "        DEPARTS", "a DEPART while the robot moves"},
     {"TRANS(10, 0, 2.5, 0, 180, 0)", "TRANS(10, 0, 2.5, 0, 180)", "needed ','"},
     {"TRANS(10, 0, 2.5, 0, 180, 0)", "TRANS(10, 0, 2.5, 0, 180, 0, 0)", "needed ')'"},
     {"TRANS(10, 0,", "TRANS(10, -0.0,", "a zero without sign"},
@@ -153,6 +159,62 @@ const Edit kEdits[] = {
     {"        BREAK\n        DEPARTS", "        HALT\n        DEPARTS", "an IF or HALT here"}};
 
 INSTANTIATE_TEST_SUITE_P(ReadVplus, ReadVplusRefuses, testing::ValuesIn(kEdits));
+
+struct Away {
+  const char *trans, *statement;
+  std::array<double, 3> xyz_mm;  // by hand: x, y, z less the distance times (cos y sin p, sin y sin p, cos p)
+};
+class ReadVplusAway : public testing::TestWithParam<Away> {
+ protected:
+  // The statement behind a move to the location; its move is the second.
+  static ReadMove moved() {
+    const std::string text = edited("TRANS(10, 0, 2.5, 0, 180, 0)", GetParam().trans);
+    std::string moves = text;
+    const std::size_t at = moves.find("        APPRO part:here.1, 50\n");
+    moves.replace(at, moves.find("        SIGNAL 97") - at,
+                  "        MOVE part:here.1\n        BREAK\n        " + std::string(GetParam().statement) +
+                      "\n        BREAK\n");
+    return std::get<ReadMove>(read_vplus(moves, "away.v2").events.at(1));
+  }
+};
+
+TEST_P(ReadVplusAway, GoesBackAlongTheToolsOwnZ) {
+  const ReadMove move = moved();
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(move.pose.xyz_mm[i], GetParam().xyz_mm[i], 1e-9) << i;
+  EXPECT_EQ(move.joint, std::string(GetParam().statement).find("S ") == std::string::npos);
+  EXPECT_EQ(move.work, "part");
+  EXPECT_EQ(move.zone_mm, 0.0);
+}
+
+const Away kAways[] = {
+    {"TRANS(10, 20, 30, 0, 180, 0)", "APPROS part:here.1, 50", {10.0, 20.0, 80.0}},  // tool down
+    {"TRANS(10, 20, 30, 0, 180, 0)", "APPRO part:here.1, 50", {10.0, 20.0, 80.0}},
+    {"TRANS(10, 20, 30, 0, 180, 0)", "APPROS part:here.1, -50", {10.0, 20.0, -20.0}},  // beyond it
+    {"TRANS(10, 20, 30, 0, 180, 0)", "DEPARTS 50", {10.0, 20.0, 80.0}},
+    {"TRANS(10, 20, 30, 0, 180, 0)", "DEPART 50", {10.0, 20.0, 80.0}},
+    {"TRANS(10, 20, 30, 77, 180, -141)", "APPROS part:here.1, 50", {10.0, 20.0, 80.0}},  // gimbal lock
+    {"TRANS(10, 20, 30, 77, 180, -141)", "DEPARTS 50", {10.0, 20.0, 80.0}},
+    {"TRANS(10, 20, 30, 77, 0, -141)", "APPROS part:here.1, 50", {10.0, 20.0, -20.0}},
+    {"TRANS(10, 20, 30, 77, 0, -141)", "DEPARTS 50", {10.0, 20.0, -20.0}},
+    {"TRANS(10, 20, 30, 0, 90, 45)", "APPROS part:here.1, 50", {-40.0, 20.0, 30.0}},
+    {"TRANS(10, 20, 30, 90, 90, 45)", "DEPARTS 50", {10.0, -30.0, 30.0}},
+    {"TRANS(10, 20, 30, 30, 60, 5)", "APPROS part:here.1, 100", {-65.0, -23.301270189, -20.0}},
+    {"TRANS(10, 20, 30, 30, 60, 5)", "DEPARTS 100", {-65.0, -23.301270189, -20.0}},
+    {"TRANS(1, 2, 3, 0, 0, 0)", "APPROS part:TRANS(10, 20, 30, 0, 180, 0), 50", {10.0, 20.0, 80.0}}};
+
+INSTANTIATE_TEST_SUITE_P(ReadVplus, ReadVplusAway, testing::ValuesIn(kAways));
+
+// Each from where the one before it ended, an approach among them, and with the turn of that pose.
+TEST(ReadVplus, ADepartLeavesFromTheLastPose) {
+  const Reading read =
+      read_vplus(edited("        APPRO part:here.1, 50\n        BREAK\n",
+                        "        APPROS part:here.1, 50\n        BREAK\n        DEPARTS 7\n        BREAK\n"
+                        "        DEPART 0.5\n        BREAK\n"),
+                 "hand.v2");
+  expect_pose(std::get<ReadMove>(read.events[0]), {10.0, 0.0, 52.5}, {0.0, 0.0, 1.0, 0.0});
+  expect_pose(std::get<ReadMove>(read.events[1]), {10.0, 0.0, 59.5}, {0.0, 0.0, 1.0, 0.0});
+  expect_pose(std::get<ReadMove>(read.events[2]), {10.0, 0.0, 60.0}, {0.0, 0.0, 1.0, 0.0});
+}
 
 TEST(ReadVplus, ATrapMustComeBeforeTheFirstMove) {
   const std::string trap = ".PROGRAM off()\n SIGNAL -97\n HALT\n.END\n";

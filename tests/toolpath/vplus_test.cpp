@@ -131,6 +131,119 @@ TEST(Vplus, LongProgramsAreSplitAndEachPartStatesItsSpeed) {
   EXPECT_EQ(read_vplus(text, "p.v2").longest_procedure, 10);
 }
 
+// Two polylines: the first one closed.
+Correction two_rings() {
+  Correction correction = test::ring(12, 60.0, true);
+  for (const CorrectedPoint& row : test::ring(8, 25.0, false, 2).points) correction.points.push_back(row);
+  return correction;
+}
+
+TEST(Vplus, ComesToEachPolylineByAnApproachAndLeavesItByADepart) {
+  for (const bool dry_run : {false, true}) {
+    ProgramOptions options;
+    options.dry_run = dry_run;
+    const Program program = make_program(two_rings(), kNoOffset, test::some_cell("vplus"), options);
+    const std::string text = write_vplus(program, test::toy_hash);
+    EXPECT_EQ(count_of(text, "        APPRO wPart:p, 50.0000\n        BREAK\n"), 1u);  // by the joints
+    EXPECT_EQ(count_of(text, "        APPROS wPart:p, 50.0000\n        BREAK\n"), 1u);
+    EXPECT_EQ(count_of(text, " MMPS ALWAYS\n        DEPARTS 50.0000\n        BREAK\n"), 2u);
+    EXPECT_EQ(count_of(text, "        MOVE "), 0u);
+    EXPECT_EQ(count_of(text, "        MOVES wPart:p\n"), 13u + 8u);  // the rows and nothing else
+    EXPECT_EQ(count_of(text, "        SET p = TRANS("), 13u + 8u);   // none for a clearance
+    EXPECT_EQ(differences(program, read_vplus(text, "p.v2"), test::toy_hash), std::vector<std::string>());
+  }
+}
+
+// Random rows, gimbal lock among them, each with the clearance before and behind it as a path has them.
+Program rows_with_clearance(int rows, double clearance_mm) {
+  Program program = test::random_program(8, rows, "vplus");
+  program.cell.clearance_mm = clearance_mm;
+  program.cell.max_points = 4998;  // three moves a row: no part begins with a departure
+  std::vector<Event> events;
+  for (const Event& event : program.events) {
+    const Move* random = std::get_if<Move>(&event);
+    if (random == nullptr) continue;
+    Move row = *random, clearance = *random;
+    row.row = static_cast<std::ptrdiff_t>(events.size() / 3);
+    row.zone_mm = clearance.zone_mm = 0.0;
+    clearance.work_from_tool.translation() -= clearance_mm * row.work_from_tool.linear().col(2);
+    events.insert(events.end(), {clearance, row, clearance});
+  }
+  program.events = std::move(events);
+  return program;
+}
+
+TEST(Vplus, TenThousandApproachesAndDeparturesComeBackWithinAThousandth) {
+  const Program meant = rows_with_clearance(10000, 50.0);
+  const std::string text = write_vplus(meant, test::toy_hash);
+  EXPECT_EQ(count_of(text, " APPRO wPart:p, ") + count_of(text, " APPROS wPart:p, "), 10000u);
+  EXPECT_EQ(count_of(text, " DEPART 50.") + count_of(text, " DEPARTS 50."), 10000u);
+  EXPECT_EQ(differences(meant, read_vplus(text, "p.v2"), test::toy_hash), std::vector<std::string>());
+}
+
+// The angles have 4 decimals: far out their rounding moves the place, and a computed pose is written there.
+TEST(Vplus, ALongClearanceIsComputedWhereTheAnglesDigitsDoNotReach) {
+  const Program meant = rows_with_clearance(2000, 2000.0);
+  const std::string text = write_vplus(meant, test::toy_hash);
+  const std::size_t departs = count_of(text, " DEPART 2000.") + count_of(text, " DEPARTS 2000.");
+  EXPECT_GT(departs, 0u);
+  EXPECT_LT(departs, 2000u);
+  EXPECT_EQ(differences(meant, read_vplus(text, "p.v2"), test::toy_hash), std::vector<std::string>());
+}
+
+TEST(Vplus, AClearanceThatIsNotTheRowMovedBackIsComputed) {
+  const auto no_edit = [](Move&) {};
+  const auto aside = [](Move& move) { move.work_from_tool.translation().x() += 0.01; };
+  const auto higher = [](Move& move) { move.work_from_tool.translation().z() += 0.01; };
+  const auto turned = [](Move& move) {
+    move.work_from_tool.linear() *= AngleAxisd(1e-4, Vector3d::UnitZ()).toRotationMatrix();
+  };
+  const auto text_with = [](void (*edit)(Move&)) {
+    Program program = make_program(test::ring(12, 60.0, false), kNoOffset, test::some_cell("vplus"), {});
+    for (Event& event : program.events)
+      if (Move* move = std::get_if<Move>(&event); move != nullptr && move->row < 0) edit(*move);
+    std::string text = write_vplus(program, test::toy_hash);
+    EXPECT_EQ(differences(program, read_vplus(text, "p.v2"), test::toy_hash), std::vector<std::string>());
+    return text;
+  };
+  EXPECT_EQ(count_of(text_with(no_edit), "APPRO ") + count_of(text_with(no_edit), "DEPARTS "), 2u);
+  for (void (*edit)(Move&) : {+aside, +higher, +turned}) {
+    const std::string text = text_with(edit);
+    EXPECT_EQ(count_of(text, "APPRO ") + count_of(text, "DEPARTS "), 0u);
+    EXPECT_EQ(count_of(text, "        MOVE wPart:p\n"), 1u);
+    EXPECT_EQ(count_of(text, "        MOVES wPart:p\n"), 12u + 1u);
+  }
+}
+
+TEST(Vplus, NoPartBeginsWithADepart) {
+  Cell cell = test::some_cell("vplus");
+  cell.max_points = 14;  // clearance and 13 rows: the last clearance is a part of its own
+  const std::string text = text_of(cell);
+  const std::size_t part = text.find(".PROGRAM ArrisPath.2()\n        AUTO LOC p\n        SPEED ");
+  ASSERT_NE(part, std::string::npos);
+  EXPECT_LT(text.find("        SET p = TRANS(", part), text.find("        MOVES wPart:p\n", part));
+  EXPECT_EQ(count_of(text, "DEPART"), 0u);
+}
+
+TEST(Vplus, AnotherDistanceOrKindOfClearanceIsNoticed) {
+  const Program program = make_program(two_rings(), kNoOffset, test::some_cell("vplus"), {});
+  const std::string text = write_vplus(program, test::toy_hash);
+  const std::pair<const char*, const char*> edits[] = {{"APPRO wPart:p, 50.0000", "APPRO wPart:p, 50.0020"},
+                                                       {"APPRO wPart:p, 50.", "APPRO wPart:p, -50."},
+                                                       {"APPRO wPart:p", "APPROS wPart:p"},
+                                                       {"APPROS wPart:p", "APPRO wPart:p"},
+                                                       {"DEPARTS 50.0000", "DEPARTS 50.0020"},
+                                                       {"DEPARTS 50.", "DEPARTS -50."},
+                                                       {"DEPARTS", "DEPART"}};
+  for (const auto& [from, to] : edits) {
+    std::string other = text;
+    other.replace(other.find(from), std::string(from).size(), to);
+    const Reading read = read_vplus(other, "p.v2");
+    const auto no_hash = [&](std::string_view) { return read.body_sha256; };
+    EXPECT_EQ(differences(program, read, no_hash).size(), 1u) << to;
+  }
+}
+
 TEST(Vplus, TheFrameCanComeFromTaughtPoints) {
   Cell cell = test::some_cell("vplus");
   cell.work_points = "pa, pb, pc";

@@ -169,6 +169,7 @@ class Runner {
     if (taught_.count(now.name.key) > 0)
       refuse(source_, now.line, "a tool of taught points", "TRANS, or a tool that the controller has");
     fixed_.insert(now.name.key);
+    last_.reset();  // the place of another tip
     const auto found = globals_.find(now.name.key);
     tool_ = found == globals_.end() ? now.name.written : found->second.first;
     if (found != globals_.end()) out_.tools[tool_].flange_from_tool = found->second.second;
@@ -204,8 +205,9 @@ class Runner {
     if (now.kind == StatementKind::kMove) {
       last_ = point(now, locals);
       work_ = frame(now.name);
-    } else if (!last_) {
-      refuse(source_, now.line, "a DEPART from a place that is not known", "a move before it");
+    } else {
+      must_stand(now.line, "a DEPART");
+      if (!last_) refuse(source_, now.line, "a DEPART from a place that is not known", "a move before it");
     }
     last_ = backed(*last_, now.away_mm);
     read.pose = *last_;

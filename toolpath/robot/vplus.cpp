@@ -2,8 +2,8 @@
 
 #include "acquisition/types/error.hpp"
 #include "toolpath/formats/number.hpp"
-#include "toolpath/robot/euler_zyz.hpp"
 #include "toolpath/robot/program_text.hpp"
+#include "toolpath/robot/vplus_location.hpp"
 #include "toolpath/robot/vplus_names.hpp"
 
 namespace arris {
@@ -11,25 +11,16 @@ namespace {
 
 using std::string;
 
-constexpr int kDecimals = 4;
 constexpr std::size_t kLongestLine = 120;
 const string kIndent = "        ";
-
-string trans_text(const RigidMotion& motion) {
-  const Eigen::Vector3d at_mm = motion.translation();
-  const Eigen::Vector3d turn_deg = yaw_pitch_roll_deg(motion.linear(), kDecimals);
-  string text = "TRANS(";
-  for (double value : {at_mm.x(), at_mm.y(), at_mm.z(), turn_deg.x(), turn_deg.y(), turn_deg.z()})
-    text += (text.back() == '(' ? "" : ", ") + fixed_text(value, kDecimals);
-  return text + ")";
-}
 
 class Writer {
  public:
   explicit Writer(const Program& program) : program_(program), cell_(program.cell) {}
 
   string run(const std::function<string(std::string_view)>& sha256_hex) {
-    for (const Event& event : program_.events) std::visit([&](const auto& e) { take(e); }, event);
+    for (; at_ < program_.events.size(); ++at_)
+      std::visit([&](const auto& event) { take(event); }, program_.events[at_]);
     must_stand("the end of the program");
     const string head =
         ".PROGRAM " + program_.name + "()\n" +
@@ -41,17 +32,56 @@ class Writer {
 
  private:
   void take(const Move& move) {
-    if (parts_.empty() || moves_in_part_ == cell_.max_points) {
-      parts_.emplace_back();
-      moves_in_part_ = 0;
-      speed_.clear();
-    }
+    if (parts_.empty() || moves_in_part_ == cell_.max_points) begin_part();
     ++moves_in_part_;
     set_speed(move.speed_mm_s);
-    line("SET p = " + trans_text(move.work_from_tool));
-    line(string(move.joint ? "MOVE " : "MOVES ") + cell_.work_name + ":p");
+    if (above_last_row(move)) {
+      line(string(move.joint ? "DEPART " : "DEPARTS ") + vplus_length_text(cell_.clearance_mm));
+    } else if (const Move* row = row_below(move)) {
+      set_location(row->work_from_tool);
+      line(string(move.joint ? "APPRO " : "APPROS ") + cell_.work_name + ":p, " +
+           vplus_length_text(cell_.clearance_mm));
+    } else {
+      set_location(move.work_from_tool);
+      line(string(move.joint ? "MOVE " : "MOVES ") + cell_.work_name + ":p");
+    }
     stands_ = move.zone_mm == 0.0;
     if (stands_) line("BREAK");
+    last_ = &move;
+  }
+
+  void begin_part() {
+    parts_.emplace_back();
+    moves_in_part_ = 0;
+    speed_.clear();
+    location_.clear();
+    last_ = nullptr;
+  }
+
+  // Whether the move goes from the row where the robot stands to the clearance above it. Not first in a part:
+  // one that is executed by itself must not leave from wherever the robot happens to be.
+  [[nodiscard]] bool above_last_row(const Move& move) const {
+    return move.row < 0 && last_ != nullptr && last_->row >= 0 && stands_ && is_above(move, *last_);
+  }
+
+  // The row that the program goes to from this move, if the move is the clearance above it.
+  [[nodiscard]] const Move* row_below(const Move& move) const {
+    if (move.row >= 0) return nullptr;
+    for (std::size_t i = at_ + 1; i < program_.events.size(); ++i)
+      if (const Move* next = std::get_if<Move>(&program_.events[i]))
+        return next->row >= 0 && is_above(move, *next) ? next : nullptr;
+    return nullptr;
+  }
+
+  [[nodiscard]] bool is_above(const Move& move, const Move& row) const {
+    return lies_back(move.work_from_tool, row.work_from_tool, cell_.clearance_mm);
+  }
+
+  void set_location(const RigidMotion& work_from_tool) {
+    const string location = "SET p = " + trans_text(vplus_location(work_from_tool));
+    if (location == location_) return;
+    line(location);
+    location_ = location;
   }
 
   void take(const SetOutput& set) {
@@ -91,11 +121,12 @@ class Writer {
   [[nodiscard]] string frames() const {
     string text;
     if (cell_.define_tool)
-      text += kIndent + "SET " + cell_.tool_name + " = " + trans_text(cell_.flange_from_tool) + "\n";
+      text += kIndent + "SET " + cell_.tool_name + " = " +
+              trans_text(vplus_location(cell_.flange_from_tool)) + "\n";
     text += kIndent + "TOOL " + cell_.tool_name + "\n";
     if (!cell_.define_work) return text;
     text += kIndent + "SET " + cell_.work_name + " = ";
-    if (cell_.work_points.empty()) return text + trans_text(cell_.robot_from_work) + "\n";
+    if (cell_.work_points.empty()) return text + trans_text(vplus_location(cell_.robot_from_work)) + "\n";
     const string origin = cell_.work_points.substr(0, cell_.work_points.find(','));
     return text + "FRAME(" + cell_.work_points + ", " + origin + ")\n";
   }
@@ -131,7 +162,9 @@ class Writer {
   const Program& program_;
   const Cell& cell_;
   std::vector<string> parts_;
-  string speed_;
+  string speed_, location_;     // as the part has set them
+  const Move* last_ = nullptr;  // of the part
+  std::size_t at_ = 0;          // of the events
   int moves_in_part_ = 0;
   bool stands_ = true;
 };
