@@ -36,6 +36,12 @@ class Section {
   std::string heading_;
 };
 
+std::string duration_words(double seconds) {
+  if (seconds < 90.0) return std::to_string(std::lround(seconds)) + " s";
+  if (seconds < 5400.0) return std::to_string(std::lround(seconds / 60.0)) + " min";
+  return std::to_string(std::lround(seconds / 3600.0)) + " h";
+}
+
 std::string scans(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " scan" : " scans");
 }
@@ -143,6 +149,19 @@ void print_next(const BatchRecord& record) {
 }
 
 }  // namespace
+
+std::string progress_text(const BatchProgress& progress) {
+  std::string text = std::to_string(progress.done) + "/" + scans(progress.total);
+  if (progress.not_good > 0) text += ", " + std::to_string(progress.not_good) + " not good";
+  if (progress.left_s && progress.done < progress.total)
+    text += ", " + duration_words(*progress.left_s) + " left";
+  const char* separator = "; running ";
+  for (const std::string& name : progress.running) {
+    text += separator + name;
+    separator = ", ";
+  }
+  return text;
+}
 
 void print_batch(const BatchRecord& record) {
   print_head(record);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <map>
 
@@ -31,7 +32,9 @@ std::string last_line(std::string text) {
   return line;
 }
 
-std::string signal_words(int signal) {
+std::string signal_words(int signal, double late_s) {
+  if (late_s > 0.0)
+    return "stopped, for it ran longer than " + std::to_string(std::lround(late_s)) + " s (--timeout)";
   std::string words = "ended by signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")";
   if (signal == 9) words += ": stopped from outside, or the machine ran out of memory";
   return words;
@@ -82,7 +85,7 @@ BatchRow row_of_failure(const BatchScan& scan, const ChildEnd& end) {
   row.wall_s = end.wall_s;
   const bool known = end.exit_code == 1 || end.exit_code == 3 || end.exit_code == 6;
   if (end.signal != 0)
-    row.message = signal_words(end.signal);
+    row.message = signal_words(end.signal, end.late_s);
   else if (known)
     row.exit_code = end.exit_code;
   else

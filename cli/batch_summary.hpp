@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "cli/batch_rows.hpp"
 
@@ -15,6 +17,17 @@ struct BatchRecord {
   std::vector<BatchRow> rows;
   double total_s = 0.0;
 };
+
+/// How far a batch is.
+struct BatchProgress {
+  std::size_t done = 0, total = 0;  ///< scans, those kept from before among them
+  std::size_t not_good = 0;         ///< of those that are done: every exit code but 0
+  std::optional<double> left_s;     ///< estimated; unknown before the first one is done
+  std::vector<std::string> running;
+};
+
+/// "12/1000 scans, 1 not good, 3 min left; running part7, part9"
+[[nodiscard]] std::string progress_text(const BatchProgress& progress);
 
 /// summary.csv: a row a scan. Holds nothing that depends on when, how fast, in what order or in how many
 /// attempts the scans were run; lengths in mm, unknown figures empty, CRLF-free, quoted as RFC 4180 says.

@@ -6,9 +6,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstring>
 
@@ -86,10 +88,24 @@ void ChildPool::start(int id, const std::vector<std::string>& arguments) {
     ::close(ends[0]);
     refuse_start(failure);
   }
-  children_.push_back({id, pid, ends[0], now_s(), {}});
+  children_.push_back({id, pid, ends[0], now_s(), {}, false});
+}
+
+int ChildPool::kill_late(int timeout_ms) {
+  for (Child& child : children_) {
+    if (most_s_ <= 0.0 || child.late) continue;
+    const double left_ms = std::ceil(1e3 * (child.began_s + most_s_ - now_s()));
+    child.late = left_ms <= 0.0;
+    if (child.late)
+      ::kill(child.pid, SIGKILL);
+    else if (timeout_ms < 0 || left_ms < timeout_ms)
+      timeout_ms = static_cast<int>(std::min(left_ms, 1e9));
+  }
+  return timeout_ms;
 }
 
 std::vector<ChildEnd> ChildPool::wait(int timeout_ms) {
+  timeout_ms = kill_late(timeout_ms);
   std::vector<pollfd> polled;
   for (const Child& child : children_) polled.push_back({child.stderr_fd, POLLIN, 0});
   std::vector<ChildEnd> ended;
@@ -106,6 +122,7 @@ std::vector<ChildEnd> ChildPool::wait(int timeout_ms) {
     ended.back().id = child.id;
     ended.back().said = std::move(child.said);
     ended.back().wall_s = now_s() - child.began_s;
+    if (child.late && ended.back().signal == SIGKILL) ended.back().late_s = most_s_;
   }
   children_ = std::move(still);
   return ended;

@@ -14,12 +14,15 @@ struct ChildEnd {
   int signal = 0;       ///< 0: it ended by itself
   std::string said;     ///< stderr, the last 64 KiB at most
   double wall_s = 0.0;  ///< from start to end
+  double late_s = 0.0;  ///< the time that it was killed for running longer than; 0: it was not
 };
 
 /// Children that run this same program. They die with it, however it dies, and their stdout is dropped.
 class ChildPool {
  public:
-  ChildPool() = default;
+  /// A child that runs longer than `most_s` is killed by wait(), for one that hangs hears no SIGTERM; 0:
+  /// none.
+  explicit ChildPool(double most_s = 0.0) : most_s_(most_s) {}
   ~ChildPool();  ///< asks those that still run to stop, and waits for them
   ChildPool(const ChildPool&) = delete;
   ChildPool& operator=(const ChildPool&) = delete;
@@ -28,7 +31,8 @@ class ChildPool {
   ///   throws  Error(kInput): the machine gives no further process
   void start(int id, const std::vector<std::string>& arguments);
 
-  /// Waits until a child ends, a signal arrives, or the time is over; returns those that ended, by id.
+  /// Waits until a child ends or is late, a signal arrives, or the time is over; returns those that ended, by
+  /// id.
   [[nodiscard]] std::vector<ChildEnd> wait(int timeout_ms);
 
   /// SIGTERM to all: each ends its stage and removes what is half-written.
@@ -44,7 +48,12 @@ class ChildPool {
     int stderr_fd = -1;
     double began_s = 0.0;
     std::string said;
+    bool late = false;
   };
+  /// Kills who is late; returns how long to wait until the next one is, `timeout_ms` at most (-1: for ever).
+  int kill_late(int timeout_ms);
+
+  double most_s_;
   std::vector<Child> children_;
 };
 

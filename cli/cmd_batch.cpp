@@ -34,12 +34,6 @@ std::string as_word(const fs::path& path) {
   return text.starts_with("-") ? "./" + text : text;
 }
 
-std::string duration_words(double seconds) {
-  if (seconds < 90.0) return std::to_string(std::lround(seconds)) + " s";
-  if (seconds < 5400.0) return std::to_string(std::lround(seconds / 60.0)) + " min";
-  return std::to_string(std::lround(seconds / 3600.0)) + " h";
-}
-
 /// What every run of the batch shares.
 RunArgs run_args(const BatchArgs& args) {
   RunArgs run;
@@ -81,6 +75,7 @@ class Batch {
         shared_inputs_(std::move(shared_inputs)),
         scans_(std::move(scans)),
         folder_(folder),
+        pool_(args.timeout_s),
         rows_(scans_.size()) {}
 
   /// Runs or keeps every scan. Throws Error(kInterrupted) and Error(kInput: disk full); what is done stays.
@@ -114,6 +109,7 @@ class Batch {
         rows_[index] = row_of(scan, *earlier);
         rows_[index].kept = true;
         ++kept_;
+        count(rows_[index]);
         return;
       }
     }
@@ -165,7 +161,10 @@ class Batch {
     }
     rows_[index].run_again_because = because;
     ++done_now_;
+    count(rows_[index]);
   }
+
+  void count(const BatchRow& row) { not_good_ += row.exit_code != 0 ? 1 : 0; }
 
   /// A failed run leaves no folder: neither may the one of other inputs that it was to replace.
   void remove_outdated(const BatchScan& scan, bool is_run_folder) const {
@@ -211,19 +210,16 @@ class Batch {
     return std::to_string(kept_ + done_now_) + " of " + std::to_string(scans_.size()) + " scans done";
   }
 
-  /// "12/1000 scans, 1 refused; 3 min left; running part7, part9"
   void show() {
-    std::string text = std::to_string(kept_ + done_now_) + "/" + std::to_string(scans_.size()) + " scans";
-    if (done_now_ > 0 && kept_ + done_now_ < scans_.size()) {
-      const double left = static_cast<double>(scans_.size() - kept_ - done_now_);
-      text += ", " + duration_words(seconds_since(began_) / static_cast<double>(done_now_) * left) + " left";
-    }
-    const char* separator = "; running ";
-    for (const int id : pool_.running_ids()) {
-      text += separator + scans_[static_cast<std::size_t>(id)].name;
-      separator = ", ";
-    }
-    progress_.show(text);
+    BatchProgress now;
+    now.done = kept_ + done_now_;
+    now.total = scans_.size();
+    now.not_good = not_good_;
+    if (done_now_ > 0)
+      now.left_s =
+          seconds_since(began_) / static_cast<double>(done_now_) * static_cast<double>(now.total - now.done);
+    for (const int id : pool_.running_ids()) now.running.push_back(scans_[static_cast<std::size_t>(id)].name);
+    progress_.show(progress_text(now));
   }
 
   bool force_;
@@ -234,7 +230,7 @@ class Batch {
   BatchFolder folder_;
   ChildPool pool_;  // after the folder: the children end before its lock
   std::vector<BatchRow> rows_;
-  std::size_t next_ = 0, kept_ = 0, done_now_ = 0;
+  std::size_t next_ = 0, kept_ = 0, done_now_ = 0, not_good_ = 0;
   Clock::time_point began_ = Clock::now();
   console::Progress progress_;
 };

@@ -81,6 +81,11 @@ void add_batch(CLI::App& app, const Common& common, Chosen& chosen) {
   command->add_option("--jobs", args->jobs, "scans at a time; 0: one a core")
       ->check(CLI::Range(0, 1024))
       ->option_text("N");
+  command
+      ->add_option("--timeout", args->timeout_s,
+                   "end a scan that runs longer, its row says so; 0 (unless given): never")
+      ->check(CLI::Range(0, 1000000))
+      ->option_text("SECONDS");
   command->add_option("--cell", args->cell, "station file; replaces the one the recipe names")
       ->option_text("FILE");
   command->add_flag("--inspect", args->inspect_only, "shape and contours alone, no tool path");

@@ -65,8 +65,9 @@ struct BatchArgs {
   bool inspect_only = false;
   bool force = false;  ///< run again what is complete
   bool json = false;
-  int jobs = 0;     ///< processes at a time; 0: one a core
-  int threads = 0;  ///< of each process; 0: one
+  int jobs = 0;       ///< processes at a time; 0: one a core
+  int threads = 0;    ///< of each process; 0: one
+  int timeout_s = 0;  ///< of each process, which is killed then; 0: none
 };
 /// Returns the worst exit code of its scans; throws Error(kInput) for what keeps all of them from running.
 [[nodiscard]] int run_batch(const BatchArgs& args);

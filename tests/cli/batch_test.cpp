@@ -1,7 +1,9 @@
 // What a batch decides without running anything: which scans, their names, the worst code, the table.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
+#include <csignal>
 #include <random>
 
 #include "acquisition/types/error.hpp"
@@ -106,6 +108,60 @@ TEST(BatchOutcome, OfAProcessThatDidNotEndByItselfIsOne) {
   refused.said = "arris: note: x\narris: the file is empty\n";
   EXPECT_EQ(row_of_failure({"a.ply", "a"}, refused).exit_code, 3);
   EXPECT_EQ(row_of_failure({"a.ply", "a"}, refused).message, "the file is empty");
+}
+
+std::vector<ChildEnd> ended(ChildPool& pool) {
+  std::vector<ChildEnd> all;
+  while (pool.running() > 0)
+    for (ChildEnd& end : pool.wait(-1)) all.push_back(std::move(end));
+  return all;
+}
+
+// The children are this test program: it hangs when its file of flags is a pipe that nobody writes.
+TEST(ChildPool, KillsWhatRunsLongerThanItMay) {
+  const testing::TestFolder folder;
+  const std::string pipe = (folder.path() / "flags").string();
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  ChildPool pool(0.3);
+  pool.start(7, {"--gtest_flagfile=" + pipe});
+  const std::vector<ChildEnd> ends = ended(pool);
+  ASSERT_EQ(ends.size(), 1U);
+  EXPECT_EQ(ends[0].id, 7);
+  EXPECT_EQ(ends[0].signal, SIGKILL);
+  EXPECT_EQ(ends[0].late_s, 0.3);
+  EXPECT_GE(ends[0].wall_s, 0.3);
+}
+
+TEST(ChildPool, LeavesThoseAloneThatEndInTime) {
+  for (const double most_s : {0.0, 3600.0}) {
+    ChildPool pool(most_s);
+    pool.start(1, {"--gtest_list_tests"});
+    pool.start(2, {"--gtest_list_tests"});
+    const std::vector<ChildEnd> ends = ended(pool);
+    EXPECT_EQ(ends.size(), 2U);
+    for (const ChildEnd& end : ends) {
+      EXPECT_EQ(end.exit_code, 0) << end.said;
+      EXPECT_EQ(end.late_s, 0.0);
+    }
+  }
+}
+
+TEST(BatchRows, OfAScanThatRanTooLongNamesTheLimit) {
+  ChildEnd late;
+  late.signal = SIGKILL;
+  late.late_s = 60.0;
+  const BatchRow row = row_of_failure({"a.ply", "a"}, late);
+  EXPECT_EQ(row.exit_code, 1);
+  EXPECT_EQ(row.message, "stopped, for it ran longer than 60 s (--timeout)");
+}
+
+TEST(BatchProgressLine, SaysHowManyAreNotGoodAndHowLongItTakes) {
+  EXPECT_EQ(progress_text({.done = 0, .total = 1, .not_good = 0, .left_s = {}, .running = {"a"}}),
+            "0/1 scan; running a");
+  EXPECT_EQ(progress_text({.done = 12, .total = 1000, .not_good = 1, .left_s = 200.0, .running = {"a", "b"}}),
+            "12/1000 scans, 1 not good, 3 min left; running a, b");
+  EXPECT_EQ(progress_text({.done = 5, .total = 5, .not_good = 5, .left_s = 0.0, .running = {}}),
+            "5/5 scans, 5 not good");
 }
 
 TEST(BatchInputs, AnyDifferenceIsNamed) {

@@ -214,6 +214,21 @@ TEST_F(Batch, CtrlCStopsItsRunsAndLeavesNothingHalfWritten) {
   EXPECT_EQ(summary("out"), summary("undisturbed"));
 }
 
+TEST_F(Batch, AScanThatHangsIsEndedByTheTimeLimitAndTriedAgain) {
+  const Ran ran =
+      job.arris("--version >version.txt; " + kProgram +
+                " batch recipe.toml scans/s1.ply --out out --timeout 1 & "
+                "until child=$(cat /proc/$!/task/$!/children) && [ -n \"$child\" ] || ! kill -0 $!; "
+                "do :; done; kill -STOP $child; wait $!");  // it hears nothing any more
+  EXPECT_EQ(ran.code, 1) << ran.out << ran.err;
+  EXPECT_NE(summary("out").find("scans/s1.ply,,1,crashed,"), std::string::npos) << summary("out");
+  EXPECT_NE(summary("out").find("\"stopped, for it ran longer than 1 s (--timeout)\""), std::string::npos)
+      << summary("out");
+  expect_whole("out");
+  EXPECT_EQ(job.arris("batch recipe.toml scans/s1.ply --out out --timeout 600").code, 0);
+  EXPECT_NE(summary("out").find("scans/s1.ply,s1,0,good,"), std::string::npos) << summary("out");
+}
+
 class SoakBatch : public Batch {
  protected:
   SoakBatch() : Batch(4) {}
