@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kSamePointMm = 1e-3;  // a choice holds the scan's own points, rounded
 
-/// Marks the loops that the operator did not accept; the pose is still searched with all of them.
+/// Marks the loops that the operator did not accept.
 void use_choice(const ContourChoice& choice, const Eigen::Vector3d& offset_mm, ScanModel& model) {
   const std::vector<Contour> accepted = choice.accepted();
   model.loop_rejected.assign(model.loops.size(), 1);

@@ -23,6 +23,15 @@ constexpr double kMirrorAlikeRatio = 1.3;  // score of the mirror image over the
 
 /// What makes a start pose impossible because the input is wrong, not because the data are poor.
 void refuse_wrong_input(const CoarseAlignment& coarse, const Recipe& recipe) {
+  if (coarse.inverted)  // of a nearly flat part that is a mirror image as well
+    throw Error(Fault::kInput,
+                {.what = coarse.mirrored ? "the CAD mesh is inverted, or the scan is mirrored"
+                                         : "the CAD mesh is inverted, or the scan's normals are",
+                 .found = coarse.reason,
+                 .needed = "triangle normals of the mesh and normals of the scan that point out of the "
+                           "material, and a right-handed scan of the face that the recipe names as scanned",
+                 .next = "look which way the mesh's normals point, then how the scan was exported; check "
+                         "part.cad_is"});
   if (coarse.mirrored) {
     const bool is_face = recipe.part.cad_is != "scanned_face";  // the face beyond is the mirror image
     throw Error(
@@ -94,7 +103,7 @@ void describe_alignment(const Registration& found, const Measurement& measuremen
   alignment.start = found.coarse.start;
   alignment.side_decided_by = measurement.prepared.side_decided_by;
   if (alignment.side_decided_by.empty())
-    alignment.side_decided_by = found.coarse.start == "initial pose" ? "initial pose" : "shape";
+    alignment.side_decided_by = found.coarse.start == "initial pose" ? "initial pose" : "nothing";
   alignment.free_directions = found.free_directions;
   alignment.overlap_ratio = found.seen_ratio;
   if (found.usable() && !found.rigid.covariance.isZero()) {

@@ -75,6 +75,14 @@ ScanModel hypothesis(const ScanModel& scan, bool flip, bool mirror) {
   return light;
 }
 
+/// The loops that no operator has rejected.
+std::vector<Contour> not_rejected(const ScanModel& scan, const std::vector<Contour>& loops) {
+  std::vector<Contour> left;
+  for (std::size_t l = 0; l < loops.size(); ++l)
+    if (!scan.is_rejected(l)) left.push_back(loops[l]);
+  return left;
+}
+
 /// Mean of the smallest share of the values: what a gap or a clamp adds is not judged.
 double trimmed_mean(std::vector<double>& values, double kept_ratio) {
   std::sort(values.begin(), values.end());
@@ -206,12 +214,24 @@ class Search {
     return candidate;
   }
 
+  /// In words, what the surface alone leaves free near a pose: where no edge holds the part it slides. Empty:
+  /// nothing.
+  std::string free_by_surface(ScanModel light, const RigidMotion& start) const {
+    light.edge_mm.clear();
+    light.edge_normals.clear();
+    light.loops.clear();
+    const Candidate candidate = refine(light, NearestPoints({}), start);
+    std::string words;
+    for (const std::string& direction : candidate.free) words += (words.empty() ? "" : ", ") + direction;
+    return words.empty() ? words : "; the surface alone leaves these free: " + words;
+  }
+
   /// The best distinct poses of one hypothesis, best first.
   std::vector<Candidate> candidates(const ScanModel& scan, bool flip, bool mirror,
                                     std::size_t refined) const {
     const ScanModel light = hypothesis(scan, flip, mirror);
     const NearestPoints edges(light.edge_mm);
-    const std::vector<LoopMatch> matches = match_loops(loops_, light.loops);
+    const std::vector<LoopMatch> matches = match_loops(loops_, not_rejected(scan, light.loops));
     std::vector<std::pair<double, RigidMotion>> starts(matches.size());
     parallel_for(matches.size(), 1, options_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
@@ -310,7 +330,9 @@ CoarseAlignment from_initial(const ScanModel& scan, const CoarseAlignOptions& op
   result.flipped_normals = best.flip;
   const double turned = rotation_between_rad(*options.initial_scan_from_cad, best.scan_from_cad);
   if (turned > options.within_rad)
-    result.reason = "the data turn the part by more than the initial pose allows (within_deg)";
+    result.reason =
+        "the data turn the part by more than the initial pose allows (within_deg)" +
+        search.free_by_surface(hypothesis(scan, best.flip, false), *options.initial_scan_from_cad);
   else if (options.edges_needed && best.score_mm > kInitialFitsRatio * search.size_mm())
     result.reason = "the initial pose does not fit: the scan's edge stays " + millimetres(best.score_mm) +
                     " mm from the contours";
@@ -375,7 +397,13 @@ CoarseAlignment coarse_align(const CadModel& cad, const ScanModel& scan, const C
   }
   if (proper.empty() || proper.front().score_mm > 1e299) {
     result.unit_ratio = unit_that_fits(cad, scan);
-    result.reason = "no closed contour of the scan has the length of an accepted CAD contour";
+    result.reason = options.edges_needed
+                        ? "no closed contour of the scan has the length of an accepted CAD contour"
+                        : "role cut: no outline and no datum hole of the drawing is in the scan as a closed "
+                          "loop, so every "
+                          "slide along the face and the turn about its normal are free; scan one of them all "
+                          "round, or give "
+                          "scan.initial";
     return result;
   }
   const Candidate& best = proper.front();
@@ -384,15 +412,20 @@ CoarseAlignment coarse_align(const CadModel& cad, const ScanModel& scan, const C
   result.flipped_normals = best.flip;
   const std::vector<Candidate> mirrored = search.candidates(scan, false, true, 2);
   if (!mirrored.empty()) result.mirror_ratio = mirrored.front().score_mm / best.score_mm;
-  const auto call_mirrored = [&] {
-    result.mirrored = true;
-    result.reason = "the mirror image of the scan fits the part and the scan itself does not";
-    return result;
-  };
-  const double mirror_excess_mm = mirrored.empty() ? 1e300 : beyond_spacing(mirrored.front().score_mm, scan);
-  if (!side_open && best.score_mm > 2.0 * scan.spacing_mm &&
-      mirror_excess_mm < kMirrorBetterRatio * beyond_spacing(best.score_mm, scan))
-    return call_mirrored();
+  if (!side_open && best.score_mm > 2.0 * scan.spacing_mm) {
+    const auto fits_better = [&](const std::vector<Candidate>& others) {
+      return !others.empty() && beyond_spacing(others.front().score_mm, scan) <
+                                    kMirrorBetterRatio * beyond_spacing(best.score_mm, scan);
+    };
+    result.mirrored = fits_better(mirrored);
+    result.inverted = fits_better(search.candidates(scan, true, false, 2));
+    if (result.mirrored || result.inverted) {
+      result.reason = result.mirrored
+                          ? "the mirror image of the scan fits the part and the scan itself does not"
+                          : "the scan fits the part with its normals turned round, and not as they are";
+      return result;
+    }
+  }
   if (best.score_mm > kFitsCapRatio * search.cap_mm()) {  // then every pose is about as bad as another
     result.reason = "no pose fits: the best one leaves " + millimetres(best.score_mm) +
                     " mm between scan and part; is it this part, and does the scan show the contour?";
@@ -404,9 +437,18 @@ CoarseAlignment coarse_align(const CadModel& cad, const ScanModel& scan, const C
     if (other.flip == best.flip && search.same_place(best, other)) continue;
     result.runner_up_ratio = other.score_mm / best.score_mm;
     if (result.runner_up_ratio < options.ambiguity_ratio)
-      result.reason = ambiguity(best, other, result.runner_up_ratio);
+      result.reason = ambiguity(best, other, result.runner_up_ratio) +
+                      (options.edges_needed
+                           ? std::string()
+                           : search.free_by_surface(hypothesis(scan, best.flip, false), best.scan_from_cad));
     break;
   }
+  // Shape alone would take a mirrored scan, and an inverted drawing, as they come.
+  if (result.usable() && side_open)
+    result.reason =
+        "nothing says which side of the part the scanner saw: give normals in the file, scan.seen_from (a "
+        "point "
+        "in the air in front of the part) or scan.initial";
   // A bent part that is nearly its own mirror image fits either way: only said, not called mirrored.
   if (!result.usable() && !side_open && result.mirror_ratio > 0.0 &&
       result.mirror_ratio < kMirrorOfAmbiguousRatio)

@@ -30,6 +30,8 @@ struct CoarseAlignment {
   std::string reason;            ///< refusal in plain words; empty when usable
   double mirror_ratio = 0.0;  ///< score of the scan's mirror image over score_mm; near 1: a mirrored export
                               ///< would not be noticed. 0: not tried
+  bool inverted =
+      false;  ///< it fits with its normals turned round: the drawing's or the scan's point the wrong way
   bool mirrored = false;  ///< the scan's mirror image fits, the scan does not: an input error for the caller
   bool no_points =
       false;  ///< an initial pose with no scan point near the part: an input error for the caller

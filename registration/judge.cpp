@@ -63,8 +63,10 @@ void judge_coverage(const CadModel& cad, const RegistrationOptions& options, Reg
     const int id = cad.contours[c].contour().id;
     char text[200];
     if (edge.seen_ratio() < options.min_seen_ratio) {
-      std::snprintf(text, sizeof text, "contour %d: the scan shows %.0f %% of the edge, %.0f %% needed", id,
-                    100.0 * edge.seen_ratio(), 100.0 * options.min_seen_ratio);
+      std::snprintf(text, sizeof text, "contour %d: the scan shows %.0f %% of the %s, %.0f %% needed", id,
+                    100.0 * edge.seen_ratio(),
+                    options.role == ContourRole::kEdge ? "edge" : "surface along it",
+                    100.0 * options.min_seen_ratio);
       result.refusals.emplace_back(text);
     }
     // The surface field ties such a stretch to the rest of the contour, and knows how well.

@@ -28,15 +28,23 @@ void flip(ScanModel& scan) {
 
 /// Keeps the edge points of the loops that run along an accepted contour, and of those loops what is near it:
 /// a gap may join it to the border of the scan. The rest is told, not used.
-void drop_other_loops(const CadModel& cad, ScanModel& scan, const RigidMotion& scan_from_cad, double band_mm,
-                      std::vector<LoopAssignment>& assigned) {
+///   returns  the contours along which runs a loop that the operator rejected, and none that was accepted
+std::vector<std::size_t> drop_other_loops(const CadModel& cad, ScanModel& scan,
+                                          const RigidMotion& scan_from_cad, double band_mm,
+                                          std::vector<LoopAssignment>& assigned) {
   assigned = assign_loops(cad, scan.loops, scan_from_cad, band_mm);
   const RigidMotion cad_from_scan = scan_from_cad.inverse();
   scan.edge_mm.clear();
   scan.edge_normals.clear();
+  std::vector<char> rejected(cad.contours.size(), 0), accepted(cad.contours.size(), 0);
   for (std::size_t l = 0; l < scan.loops.size(); ++l) {
-    if (l < scan.loop_rejected.size() && scan.loop_rejected[l]) assigned[l].contour = -1;
     if (assigned[l].contour < 0) continue;
+    const std::size_t contour = static_cast<std::size_t>(assigned[l].contour);
+    (scan.is_rejected(l) ? rejected : accepted)[contour] = 1;
+    if (scan.is_rejected(l)) {
+      assigned[l].contour = -1;
+      continue;
+    }
     for (std::size_t i = 0; i < scan.loops[l].points_mm.size(); ++i) {
       if (pair_edge(cad, cad_from_scan * scan.loops[l].points_mm[i], kLoopReachRatio * band_mm).contour < 0)
         continue;
@@ -44,6 +52,15 @@ void drop_other_loops(const CadModel& cad, ScanModel& scan, const RigidMotion& s
       scan.edge_normals.push_back(scan.loops[l].normals[i]);
     }
   }
+  std::vector<std::size_t> only_rejected;
+  for (std::size_t c = 0; c < rejected.size(); ++c)
+    if (rejected[c] && !accepted[c]) only_rejected.push_back(c);
+  return only_rejected;
+}
+
+std::string rejected_by_operator(const Curve& curve) {
+  return "contour " + std::to_string(curve.contour().id) +
+         ": the operator rejected the scan's loop along it; scan it again, or accept that loop";
 }
 
 /// Role cut: what the tool is still to make, and stock that stands there, is no data.
@@ -139,7 +156,10 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   }
   if (result.coarse.flipped_normals) flip(scan);
   scan.side = SideKnown::kYes;
-  drop_other_loops(posed, scan, result.coarse.scan_from_cad, options.coarse.band_mm, result.loops);
+  for (const std::size_t c :
+       drop_other_loops(posed, scan, result.coarse.scan_from_cad, options.coarse.band_mm, result.loops))
+    result.refusals.push_back(rejected_by_operator(posed.contours[c]));
+  if (!result.refusals.empty()) return result;
   if (cut)
     drop_edges_at(cad.contours, result.coarse.scan_from_cad, options.surface.stock_mm + kBesideStockMm, scan);
   result.contours = rigid_stage(posed, scan, options, result);

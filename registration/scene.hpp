@@ -58,8 +58,10 @@ struct ScanModel {
   double spacing_mm = 0.0;  ///< median point spacing
   double noise_sigma_mm = 0.0;
   SideKnown side = SideKnown::kNo;
-  std::vector<char> loop_rejected =
-      {};  ///< an operator's choice, one a loop: the pose may use it, the fit may not
+  std::vector<char> loop_rejected = {};  ///< an operator's choice, one a loop: never used; empty: none is
+  [[nodiscard]] bool is_rejected(std::size_t loop) const {
+    return loop < loop_rejected.size() && loop_rejected[loop] != 0;
+  }
 };
 
 }  // namespace arris

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "registration/found_edge.hpp"
+#include "registration/judge.hpp"
 #include "registration/surface_field.hpp"
 
 namespace arris {
@@ -15,14 +16,12 @@ constexpr double kMotionStepMm = 10.0;                // the field along a conto
 constexpr double kJudgeStepMm = 5.0;                  // and its uncertainty
 constexpr double kSlideShare = 0.5;                   // of the worst variance: then the whole contour slides
 constexpr double kNearSpacings = 3.0, kNearMm = 3.0;  // a scan point this near makes a place "data"
-constexpr std::size_t kUnseenBins = 8;
+constexpr double kResidualMm = 0.15, kResidualSigmas = 5.0;  // as beside an edge that is followed
 
-/// Edge of a contour that is not there yet: seen nowhere.
+/// Edge of a contour that is not there yet: none.
 EdgeFit no_edge(const Curve& curve, const EdgeFitOptions& options) {
   EdgeFit none(ArcSpline(curve.length_mm(), curve.closed(), options.knot_mm));
-  none.bin_mm = curve.length_mm() / kUnseenBins;
-  none.seen.assign(kUnseenBins, 0);
-  none.row_gap_mm.assign(kUnseenBins, 0.0);
+  none.bin_mm = SeenAlong::kBinMm;
   return none;
 }
 
@@ -32,14 +31,14 @@ std::string text_of(const Eigen::Vector3d& direction) {
   return text;
 }
 
-/// Worst standard deviation across a contour, and where.
+/// Worst standard deviation across a contour or normal to it, and where.
 struct Worst {
   double sd_mm = 0.0, arc_mm = 0.0;
 };
-Worst worst_across(const SurfaceField& field, const Curve& curve) {
+Worst worst_place(const SurfaceField& field, const Curve& curve) {
   Worst worst;
   for (double s_mm = 0.0; s_mm < curve.length_mm(); s_mm += kJudgeStepMm) {
-    const double sd_mm = field.map(curve.point_mm(s_mm)).sd_mm.y();
+    const double sd_mm = field.map(curve.point_mm(s_mm)).sd_mm.head<2>().maxCoeff();
     if (sd_mm > worst.sd_mm) worst = {sd_mm, s_mm};
   }
   return worst;
@@ -48,7 +47,7 @@ Worst worst_across(const SurfaceField& field, const Curve& curve) {
 void judge_place(const CadModel& cad, const SurfaceField& field, const RegistrationOptions& options,
                  Registration& result) {
   for (std::size_t c = 0; c < cad.contours.size(); ++c) {
-    const Worst worst = worst_across(field, cad.contours[c]);
+    const Worst worst = worst_place(field, cad.contours[c]);
     if (worst.sd_mm <= options.max_sd_mm) continue;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> slide(field.slide_covariance_mm2(c));
     const bool slides = slide.eigenvalues()[2] > kSlideShare * worst.sd_mm * worst.sd_mm;
@@ -59,14 +58,13 @@ void judge_place(const CadModel& cad, const SurfaceField& field, const Registrat
       std::snprintf(text, sizeof text,
                     "contour %d: nothing in the scan holds its %s: standard deviation %.1f mm, at most %.1f; "
                     "scan an outline or datum holes of the drawing as well",
-                    id, motion.c_str(), std::sqrt(slide.eigenvalues()[2]), options.max_sd_mm);
+                    id, motion.c_str(), worst.sd_mm, options.max_sd_mm);
       result.free_directions.push_back(motion);
     } else {
-      std::snprintf(
-          text, sizeof text,
-          "contour %d: its place across is not known well enough at s = %.0f mm: standard deviation "
-          "%.1f mm, at most %.1f",
-          id, worst.arc_mm, worst.sd_mm, options.max_sd_mm);
+      std::snprintf(text, sizeof text,
+                    "contour %d: its place is not known well enough at s = %.0f mm: standard deviation "
+                    "%.1f mm, at most %.1f",
+                    id, worst.arc_mm, worst.sd_mm, options.max_sd_mm);
     }
     result.refusals.emplace_back(text);
   }
@@ -97,6 +95,25 @@ double seen_ratio(const std::vector<SeenAlong>& contours) {
   return seen / count;
 }
 
+/// Role cut: of the contour nothing can be seen, but the surface that it will be cut into must be.
+void judge_cut(const CadModel& cad, const ScanModel& scan, const std::vector<SeenAlong>& seen,
+               double sigma_mm, const RegistrationOptions& options, Registration& result) {
+  result.seen_ratio = seen_ratio(seen);
+  for (std::size_t c = 0; c < seen.size(); ++c) {
+    EdgeFit& none = result.contours[c].edge;
+    none.seen = seen[c].bins;
+    none.row_gap_mm.assign(none.seen.size(), 0.0);
+  }
+  judge_coverage(cad, options, result);
+  result.stage_residual_mm = {{"rigid", result.rigid.surface_rms_mm}, {"surface", sigma_mm}};
+  const double limit_mm = kResidualMm + kResidualSigmas * scan.noise_sigma_mm;
+  if (sigma_mm < limit_mm) return;
+  char text[200];
+  std::snprintf(text, sizeof text, "the surface is not explained: residual %.2f mm, scanner noise %.2f mm",
+                sigma_mm, scan.noise_sigma_mm);
+  result.refusals.emplace_back(text);
+}
+
 }  // namespace
 
 void deform_by_surface(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options,
@@ -121,7 +138,7 @@ void deform_by_surface(const CadModel& cad, const ScanModel& scan, const Registr
   std::vector<SeenAlong> seen;
   for (std::size_t c = 0; c < cad.contours.size(); ++c)
     seen.push_back(seen_along(scan, cad.contours[c], result.contours[c], options.role));
-  if (options.role == ContourRole::kCut) result.seen_ratio = seen_ratio(seen);  // else from the edges
+  if (options.role == ContourRole::kCut) judge_cut(cad, scan, seen, field->fit().sigma_mm, options, result);
   field->set_seen(std::move(seen));
   judge_place(cad, *field, options, result);
   result.field = std::move(field);

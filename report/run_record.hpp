@@ -59,7 +59,7 @@ struct AlignmentSummary {
   double overlap_ratio = 0.0;   ///< CAD band points that have a scan partner
   std::size_t pairs = 0;
   double runner_up_ratio = 0.0;  ///< score of the second best pose over the best: near 1 is ambiguous
-  std::string side_decided_by;   ///< "normals in the file", "seen_from", "initial pose", "shape"
+  std::string side_decided_by;   ///< "normals in the file", "seen_from", "initial pose", "nothing"
   std::string start;             ///< "matching loops", "initial pose"
   std::vector<std::string> free_directions;  ///< motions the data leave undetermined, in words
   std::vector<double>

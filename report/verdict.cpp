@@ -134,6 +134,7 @@ std::vector<std::string> next_steps(const RunRecord& record) {
 }
 
 std::string strain_text(const RunRecord& record) {
+  if (record.role == "cut") return "not measured: a contour that is still to be cut shows no stretch";
   const auto percent = [](double ratio) { return fixed_text(100.0 * ratio, 3) + " %"; };
   const std::string limit = record.strain_limit_ratio > 0.0
                                 ? "; a scan this dense shows " + percent(record.strain_limit_ratio)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "fixtures/synthetic/analytic_part.hpp"
 #include "tests/end_to_end/job.hpp"
 
 namespace arris {
@@ -73,6 +74,31 @@ TEST(Contours, OperatorsChoiceIsTakenForItsScanAlone) {
   EXPECT_EQ(refused.code, 3) << refused.err;
   EXPECT_NE(refused.err.find("contours.json"), std::string::npos) << refused.err;
   EXPECT_FALSE(job.names().contains("out2"));
+}
+
+TEST(Contours, ALoopThatTheOperatorRejectedIsNotFollowed) {
+  const Job job("example");
+  synthetic::ScanOptions whole_face;
+  whole_face.points = 12000;
+  whole_face.band_mm = 0.0;
+  job.put_scan("scan.ply",
+               synthetic::sample_scan(synthetic::PlatePart(synthetic::asymmetric_plate()), whole_face, 66));
+  const Ran listed = job.arris("contours scan.ply --recipe recipe.toml --json");
+  ASSERT_EQ(listed.code, 0) << listed.err;
+  const std::vector<int> ids = longest_first(json::parse(listed.out));
+  ASSERT_GE(ids.size(), 4u) << listed.out;  // border, opening, two datum holes
+  const auto accept = [&](const std::string& which) {
+    return job.arris("contours scan.ply --recipe recipe.toml --out contours.json --accept " + which).code;
+  };
+  const auto id = [&](std::size_t i) { return std::to_string(ids[i]); };
+  ASSERT_EQ(accept(id(0) + "," + id(1) + "," + id(2) + "," + id(3)), 0);
+  EXPECT_TRUE(processed(job.run("scan.ply", "all", "--contours contours.json")));
+  for (const std::string& others : {id(0), id(2), id(0) + "," + id(2) + "," + id(3)}) {
+    ASSERT_EQ(accept(others), 0);
+    const Ran ran = job.run("scan.ply", "others", "--force --contours contours.json");
+    EXPECT_EQ(ran.code, 5) << others << ran.out << ran.err;
+    EXPECT_FALSE(job.names("others").contains("program.mod"));
+  }
 }
 
 TEST(Json, OfEveryCommandParses) {

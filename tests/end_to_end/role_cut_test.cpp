@@ -71,6 +71,7 @@ TEST(RoleCutRun, NamesTheMotionThatNothingHolds) {
   job.put_uncut_scan(false, 60.0);  // no datum hole, and the outline out of sight
   const Ran ran = job.run("uncut.ply", "out");
   EXPECT_EQ(ran.code, 5) << ran.out << ran.err;
+  EXPECT_NE(ran.out.find("leaves these free: "), std::string::npos) << ran.out;
   EXPECT_FALSE(std::filesystem::exists(job.file("out/program.mod")));
 }
 

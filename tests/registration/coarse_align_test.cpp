@@ -110,6 +110,34 @@ TEST(CoarseAlign, MirroredScanIsCalledMirrored) {
   }
 }
 
+TEST(CoarseAlign, InvertedDrawingIsCalledInverted) {
+  TriangleMesh mesh = asymmetric().cad_mesh(8.0);
+  for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+  std::vector<Contour> contours;
+  for (const int c : {0, 1, 2}) {
+    contours.push_back(asymmetric().nominal_contour(c, 1.0));
+    std::reverse(contours.back().points_mm.begin(), contours.back().points_mm.end());
+    std::reverse(contours.back().normals.begin(), contours.back().normals.end());
+    for (Eigen::Vector3d& n : contours.back().normals) n = -n;
+  }
+  const CadModel inverted = prepare_cad(mesh, contours, {});
+  const CoarseAlignment found =
+      coarse_align(inverted, scenes::trial_of(asymmetric(), whole_face(), 1).scan, {});
+  EXPECT_FALSE(found.usable());
+  EXPECT_TRUE(found.inverted) << found.reason;
+}
+
+TEST(CoarseAlign, ShapeAloneDoesNotSayWhichSideWasSeen) {
+  // Mirrored and without normals the scan of a flat part is the part turned over: only the side tells.
+  synthetic::ScanOptions options = whole_face();
+  options.write_normals = false;
+  const Trial trial = scenes::changed_trial(asymmetric(), options, 2,
+                                            [](Eigen::Vector3f& p, Eigen::Vector3f&) { p.x() = -p.x(); });
+  const CoarseAlignment found = coarse_align(asymmetric_cad(), trial.scan, {});
+  EXPECT_FALSE(found.usable());
+  EXPECT_NE(found.reason.find("which side"), std::string::npos) << found.reason;
+}
+
 TEST(CoarseAlign, ScanInAnotherUnitIsRefusedWithTheUnitThatFits) {
   for (const double ratio : {25.4, 1000.0}) {
     const float shrink = static_cast<float>(1.0 / ratio);
