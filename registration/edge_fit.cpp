@@ -97,7 +97,7 @@ class EdgeFitter {
         p.arc_mm = *arc_mm;
         place(i, p);
         p.inlier = p.across_mm > -outside_mm && p.across_mm < normal_strip_mm_ &&
-                   std::abs(p.height_mm) < 3.0 * scan_.spacing_mm + 3.0;
+                   std::abs(p.height_mm) < 3.0 * scan_.spacing_mm + options_.height_reach_mm;
       }
     });
     for (StripPoint& p : all)
@@ -153,7 +153,7 @@ class EdgeFitter {
     fit_.height_covariance = covariance.topLeftCorner(n, n);
     fit_.tilt_covariance = covariance.bottomRightCorner(n, n);
     for (StripPoint& p : points_) {
-      p.inlier = std::abs(p.height_mm - height_at(p)) < kGateSigmas * sigma;
+      p.inlier = std::abs(p.height_mm - height_at(p)) < std::max(kGateSigmas * sigma, options_.gate_floor_mm);
       fit_.points += p.inlier ? 1 : 0;
     }
   }

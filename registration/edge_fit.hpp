@@ -17,6 +17,8 @@ struct EdgeFitOptions {
   double bend_across_per_mm = 5e-5;  ///< expected second derivative of the shift across, 1/mm
   double bend_normal_per_mm = 1e-4;  ///< and of the height
   double tilt_change_rad = 0.01;     ///< expected change of tilt from knot to knot
+  double height_reach_mm = 3.0;  ///< farther from the carried surface (and three spacings) no point is of it
+  double gate_floor_mm = 0.0;    ///< points this near to the fitted height take part, however low the noise
   int threads = 0;
 };
 

@@ -7,13 +7,19 @@ namespace arris {
 namespace {
 
 constexpr double kStartLooseness = 8.0;
+// A rigid motion leaves the bending: with a dense scan's reach and noise, points of the bent stretches were
+// no part of the surface, and a third of the edge was not seen.
+constexpr double kStartHeightReachMm = 10.0;
+constexpr double kStartGateMm = 0.2;
 constexpr int kSurfacePoints = 500;  // the surface counts as 100 points, however many there are
 
-/// Looser splines: relative to the rigid motion they carry the whole deformation.
+/// Looser splines and wider gates: relative to the rigid motion they carry the whole deformation.
 EdgeFitOptions for_rigid_start(EdgeFitOptions options) {
   options.bend_across_per_mm *= kStartLooseness;
   options.bend_normal_per_mm *= kStartLooseness;
   options.tilt_change_rad *= kStartLooseness;
+  options.gate_floor_mm = kStartGateMm;
+  options.height_reach_mm = kStartHeightReachMm;
   return options;
 }
 
