@@ -132,7 +132,8 @@ std::vector<Offence> check_doors(const SourceFile& file) {
 
 std::vector<Offence> check_quarantine(const SourceFile& file) {
   static const std::regex kForeign(
-      R"(^(pcl|ceres|opencv2?|flann|boost|embree\d?|tbb|oneapi)/|^(vtk|gpiod|tbb))");
+      R"(^(pcl|ceres|opencv2?|flann|boost|embree\d?|tbb|oneapi|nlohmann|fmt|cairo|CLI|toml\+\+|openssl)/)"
+      R"(|^(vtk|gpiod|tbb|cairo|json\.hpp|toml\.hpp|CLI11))");
   std::vector<Offence> offences;
   if (!is_header(file.path) || room_of(file.path) == "bridge") return offences;
   for (const Include& include : includes_of(file))
