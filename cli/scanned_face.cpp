@@ -127,6 +127,8 @@ ScannedFace face_of_solid(const Recipe& recipe, const TriangleMesh& drawn, const
                            " lies on the far face; its rim on the scanned face, contour " +
                            std::to_string(rim.id) + ", is used");
     if (is_accepted(face.accepted, rim.id)) continue;  // both rims of a hole were accepted
+    if (!is_far)
+      face.lines.push_back("contour " + std::to_string(rim.id) + " lies on the scanned face; it is used");
     face.accepted.push_back(rim);
     faces.push_back(solid.face_of(rim));
     for (const Eigen::Vector3d& n : rim.normals) towards += n / static_cast<double>(rim.normals.size());

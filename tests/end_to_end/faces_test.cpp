@@ -138,7 +138,7 @@ TEST_P(Faces, PathOnEitherFaceLiesOnItsTrueRim) {
 INSTANTIATE_TEST_SUITE_P(Drawn, Faces,
                          ::testing::Values(FaceCase{"scanned_face", false}, FaceCase{"scanned_face", true},
                                            FaceCase{"other_face", true}, FaceCase{"mid", false},
-                                           FaceCase{"solid", true}),
+                                           FaceCase{"mid", true}, FaceCase{"solid", true}),
                          [](const auto& one) {
                            return std::string(one.param.cad_is) + (one.param.far_path ? "_far" : "_scanned");
                          });
@@ -177,8 +177,13 @@ TEST(FacesAlike, WallsDoNotPull) {
   }
 }
 
-TEST(SolidRims, FarRimIsReplacedByItsPartnerAndNamed) {
-  const PlateJob job("solid", false, 0.0);
+/// With and without points on the wall between the rims.
+class SolidRims : public ::testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Walls, SolidRims, ::testing::Values(0.0, 0.03),
+                         [](const auto& one) { return one.param > 0.0 ? "Seen" : "Unseen"; });
+
+TEST_P(SolidRims, FarRimIsReplacedByItsPartnerAndNamed) {
+  const PlateJob job("solid", false, GetParam());
   const int top = job.id_at(0.0), bottom = job.id_at(-kThicknessMm);
   ASSERT_NE(top, bottom);
   ASSERT_GT(top * bottom, 0);
@@ -195,8 +200,23 @@ TEST(SolidRims, FarRimIsReplacedByItsPartnerAndNamed) {
   EXPECT_LT(error.mean_mm, kMeanMm);
 }
 
-TEST(SolidRims, PathFromTheContourRunsOnTheFarRim) {
-  const PlateJob job("solid", true, 0.0);
+TEST_P(SolidRims, RimOnTheScannedFaceIsNamedToo) {
+  const PlateJob job("solid", false, GetParam());
+  const int top = job.id_at(0.0);
+  ASSERT_GT(top, 0);
+  job.replace("recipe.toml", "file = \"contour.csv\"", "accept = [" + std::to_string(top) + "]");
+  const Ran ran = job.run("scan.ply", "out");
+  ASSERT_TRUE(accepted(ran)) << ran.out << ran.err;
+  const std::string line = "contour " + std::to_string(top) + " lies on the scanned face; it is used";
+  EXPECT_NE(ran.out.find("face         " + line), std::string::npos) << ran.out;
+  EXPECT_NE(testing::text_of(job.file("out/report.html")).find(line), std::string::npos);
+  const testing::PathError error = testing::error_to(testing::read_table(job.file("out/corrected.csv")),
+                                                     true_rim(job.part, job.scan, false));
+  EXPECT_LT(error.mean_mm, kMeanMm);
+}
+
+TEST_P(SolidRims, PathFromTheContourRunsOnTheFarRim) {
+  const PlateJob job("solid", true, GetParam());
   job.replace("recipe.toml", "file = \"path.csv\"\n", "");
   job.replace("recipe.toml", "thickness_mm = 10.0\n", "");  // the solid says it
   job.put("recipe.toml",
@@ -218,8 +238,9 @@ void expect_refused(const PlateJob& job, const std::string& words) {
   EXPECT_FALSE(job.names().contains("out"));
 }
 
-TEST(SolidRims, WrongFaceIsNamedByItsMirrorImage) {
-  const PlateJob job("solid", true, 0.0);  // axes leave the face below, and the recipe calls it scanned
+TEST_P(SolidRims, WrongFaceIsNamedByItsMirrorImage) {
+  const PlateJob job("solid", true,
+                     GetParam());  // axes leave the face below, and the recipe calls it scanned
   job.replace("recipe.toml", "\"other\"", "\"scanned\"");
   expect_refused(job, "the scan is mirrored, or shows the other face");
 }
