@@ -135,24 +135,25 @@ Ran run_from_root(const std::vector<std::string>& words, const fs::path& out) {
   return ran;
 }
 
-/// A recipe for each role and each face: what the guide tells people to copy is accepted as it stands.
-TEST(Pages, ExamplesOfTheProcessEngineersGuideAreAccepted) {
+/// A recipe for each role and each face: what README and guide tell people to copy is accepted as it stands.
+TEST(Pages, ExamplesOfEachRoleAndFaceAreAccepted) {
   const fs::path out = fs::path(::testing::TempDir()) / ("arris_guide_" + std::to_string(::getpid()));
   fs::create_directories(out);
-  std::set<std::string> recipes;
+  std::map<std::string, std::set<std::string>> recipes;  // of each page
+  std::set<std::vector<std::string>> tried;
   for (const auto& [line, words] : program_calls()) {
-    if (line.page != "process-engineer.md" || words.size() < 2 || !words[1].starts_with("fixtures/guide/"))
-      continue;
+    if (words.size() < 2 || !words[1].starts_with("fixtures/guide/")) continue;
+    recipes[line.page].insert(fs::path(words[1]).filename().string());
+    if (!tried.insert(words).second) continue;  // both pages show it
     const Ran ran = run_from_root(words, out);
     EXPECT_EQ(ran.code, 0) << line.text << "\n" << ran.out;
-    recipes.insert(fs::path(words[1]).filename().string());
   }
   for (const fs::directory_entry& entry :
        fs::directory_iterator(fs::path(ARRIS_SOURCE_DIR) / "fixtures" / "guide"))
-    if (entry.path().extension() == ".toml") {
-      EXPECT_TRUE(recipes.contains(entry.path().filename().string()))
-          << entry.path() << " is not in the guide";
-    }
+    if (entry.path().extension() == ".toml")
+      for (const char* page : {"README.md", "process-engineer.md"})
+        EXPECT_TRUE(recipes[page].contains(entry.path().filename().string()))
+            << entry.path() << " is not in " << page;
   fs::remove_all(out);
 }
 
