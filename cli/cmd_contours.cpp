@@ -9,6 +9,7 @@
 #include "cli/commands.hpp"
 #include "cli/console.hpp"
 #include "cli/contours_file.hpp"
+#include "cli/contours_outputs.hpp"
 #include "cli/file_contours.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/json_output.hpp"
@@ -87,6 +88,7 @@ int run_contours(const ContoursArgs& args) {
     throw Error(Fault::kUsage,
                 ErrorText{"--out needs a choice", {}, {}, "--accept IDS", "arris contours --help"});
   const Recipe recipe = args.recipe ? read_recipe(*args.recipe) : Recipe();
+  check_contours_outputs(args, recipe);
   const FileRole role = role_of(args, recipe);
   const std::string& recipe_units = role == FileRole::kDrawing ? recipe.part.cad_units : recipe.scan.units;
   const double to_mm = unit_mm(args.recipe ? recipe_units : args.units.empty() ? "mm" : args.units);

@@ -116,10 +116,26 @@ std::optional<ContourChoice> operators_choice(const RunArgs& args, const Recipe&
   if (args.contours) return read_contour_choice_for(*args.contours, sha256_file(args.scan));
   if (recipe.contour.validation == "operator")
     throw Error(Fault::kInput, {.what = "the recipe asks for contours that an operator has accepted",
+                                .where = args.recipe.string(),
+                                .found = "contour.validation = \"operator\", and no choice",
                                 .needed = "--contours FILE",
                                 .next = "make it: arris contours " + args.scan.string() +
                                         " --accept .. --out contours.json"});
   return std::nullopt;
+}
+
+/// Runs a step that works on the scan. The rooms below know no file names: an error of the input that does
+/// not say where it is lies in this file.
+template <class Step>
+auto in_scan(const fs::path& scan, const Step& step) {
+  try {
+    return step();
+  } catch (const Error& error) {
+    if (error.fault() != Fault::kInput || !error.text().where.empty()) throw;
+    ErrorText text = error.text();
+    text.where = scan.string();
+    throw Error(error.fault(), text);
+  }
 }
 
 fs::path default_out(const fs::path& scan) {
@@ -151,11 +167,15 @@ int run_main_job(const RunArgs& args) {
 
   journal.stage("reading the scan");
   const std::vector<InputFile> inputs = hashed_inputs(args, recipe, cell);
-  Measurement measurement = read_measurement(recipe, args.scan, operators_choice(args, recipe),
-                                             target_search(args, recipe, cell), args.threads);
+  const std::optional<ContourChoice> choice = operators_choice(args, recipe);
+  const std::optional<TargetSearch> targets = target_search(args, recipe, cell);
+  Measurement measurement =
+      in_scan(args.scan, [&] { return read_measurement(recipe, args.scan, choice, targets, args.threads); });
 
-  Processed processed = process(recipe, drawing, measurement, args.inspect_only, args.threads,
-                                [&](const std::string& what) { journal.stage(what); });
+  Processed processed = in_scan(args.scan, [&] {
+    return process(recipe, drawing, measurement, args.inspect_only, args.threads,
+                   [&](const std::string& what) { journal.stage(what); });
+  });
   RunRecord& record = processed.record;
   record.inputs = inputs;
   if (cell) record.frame_max_residual_mm = cell->targets_max_residual_mm;
@@ -178,8 +198,9 @@ int run_main_job(const RunArgs& args) {
   fill(folder, result_files(record));
   fill(folder, programs);
   fill(folder, journal.files(record.result_hash));
-  folder.commit();
   print_summary(record, folder.target(), journal.total_s(), args.json);
+  console::flush();  // a summary that nobody can have is an error, and an error leaves no folder
+  folder.commit();
   return report::run_exit_code(record);
 }
 

@@ -23,7 +23,11 @@ std::string one_line(std::string_view text) {
 /// After a write to stdout that failed: the reader left (no error), or the disk is full.
 void check_stdout(bool good) {
   if (good || errno == EPIPE) return;
-  throw Error(Fault::kInput, {"the output cannot be written", "stdout", std::strerror(errno), {}, {}});
+  throw Error(Fault::kInput, {.what = "the output cannot be written",
+                              .where = "stdout",
+                              .found = std::strerror(errno),
+                              .needed = "room for all of it",
+                              .next = "make room, or send it elsewhere, and give the command again"});
 }
 
 void write_error(const std::string& line) {

@@ -18,8 +18,9 @@ std::string to_line(const ErrorText& text) {
   return line;
 }
 
-Error::Error(Fault fault, const ErrorText& text) : std::runtime_error(to_line(text)), fault_(fault) {}
-Error::Error(Fault fault, const std::string& line) : std::runtime_error(line), fault_(fault) {}
+Error::Error(Fault fault, const ErrorText& text)
+    : std::runtime_error(to_line(text)), fault_(fault), text_(std::make_shared<const ErrorText>(text)) {}
+Error::Error(Fault fault, const std::string& line) : Error(fault, ErrorText{.what = line}) {}
 
 int exit_code(Fault fault) {
   switch (fault) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -33,9 +34,11 @@ class Error : public std::runtime_error {
   Error(Fault fault, const ErrorText& text);
   Error(Fault fault, const std::string& line);
   [[nodiscard]] Fault fault() const { return fault_; }
+  [[nodiscard]] const ErrorText& text() const { return *text_; }  ///< its parts; a plain line is all "what"
 
  private:
   Fault fault_;
+  std::shared_ptr<const ErrorText> text_;  // shared: copying an exception must not throw
 };
 
 [[nodiscard]] int exit_code(Fault fault);
