@@ -37,8 +37,8 @@ std::vector<fs::path> scans_in(const fs::path& folder, const std::vector<fs::pat
     if (is_scan_name(file) && it->is_regular_file(ignored) && !left_out) found.push_back(file);
   }
   if (failed)
-    throw Error(Fault::kInput,
-                {"the folder of scans cannot be read", folder.string(), failed.message(), {}, {}});
+    throw Error(Fault::kInput, {"the folder of scans cannot be read", folder.string(), failed.message(),
+                                "a folder that can be read", "check its permissions"});
   if (found.empty())
     throw Error(Fault::kInput, {"the folder holds no scan", folder.string(), "no file that ends as a scan",
                                 "ply, pcd, stl, off, xyz, xyzn, asc or pts files",

@@ -192,7 +192,8 @@ RigidMotion motion_of(const std::string& name, const CellFile::Pose& pose) {
     throw Error(Fault::kRecipe, ErrorText{name + ".quat_wxyz is no rotation",
                                           {},
                                           "length " + std::to_string(turn.norm()),
-                                          "a quaternion of length 1"});
+                                          "a quaternion of length 1",
+                                          "correct it in the cell"});
   RigidMotion motion = RigidMotion::Identity();
   motion.linear() = turn.normalized().toRotationMatrix();
   motion.translation() = vector_of(pose.xyz_mm);
@@ -203,6 +204,7 @@ RigidMotion motion_of(const std::string& name, const CellFile::Pose& pose) {
 void take_targets(const CellFile& file, Cell& cell) {
   if (!file.robot_from_scan.xyz_mm.empty() || !file.robot_from_scan.quat_wxyz.empty())
     throw Error(Fault::kRecipe, ErrorText{.what = "frames.robot_from_scan is given beside the targets",
+                                          .found = "both",
                                           .needed = "one of them: with scan_reference = \"targets\" the "
                                                     "frame is solved in each scan",
                                           .next = "leave robot_from_scan out"});
@@ -250,15 +252,21 @@ CellRead parse_cell(const std::filesystem::path& file, const std::string& text) 
   try {
     result.cell = cell_of(result.file);
   } catch (const Error& error) {
-    result.problems.push_back({error.what(), file.string()});
+    ErrorText problem = error.text();
+    if (problem.where.empty()) problem.where = file.string();
+    result.problems.push_back(std::move(problem));
   }
   return result;
 }
 
-Cell read_cell(const std::filesystem::path& file) {
+CellRead read_good_cell(const std::filesystem::path& file) {
   CellRead read = parse_cell(file, read_text_file(file, "cell"));
-  if (read.problems.empty()) return read.cell;
+  if (read.problems.empty()) return read;
   throw Error(Fault::kRecipe, read.problems.front());
+}
+
+Cell read_cell(const std::filesystem::path& file) {
+  return read_good_cell(file).cell;
 }
 
 std::string print_cell(const CellFile& file, const std::filesystem::path& folder) {

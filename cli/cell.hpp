@@ -36,8 +36,9 @@ struct CellRead {
 /// Reads and checks text as if it stood in `file`.
 [[nodiscard]] CellRead parse_cell(const std::filesystem::path& file, const std::string& text);
 
-/// Reads a cell. Throws Error(kInput) when the file cannot be read, Error(kRecipe) with the first problem in
-/// it.
+/// Reads a cell that must be good. Throws Error(kInput) when the file cannot be read, Error(kRecipe) with the
+/// first problem in it.
+[[nodiscard]] CellRead read_good_cell(const std::filesystem::path& file);
 [[nodiscard]] Cell read_cell(const std::filesystem::path& file);
 
 /// The full TOML of a cell: every key with its value, commented. Paths are written relative to `folder`.

@@ -182,6 +182,7 @@ class Batch {
       throw Error(Fault::kInput, {.what = "the inputs changed while the batch ran",
                                   .where = run_.recipe.string(),
                                   .found = what,
+                                  .needed = "the same recipe, drawing, path and cell to the end",
                                   .next = "give the same command again: what is outdated is run again"});
   }
 

@@ -46,11 +46,10 @@ fs::path fixtures_folder() {
   }
   if (fs::is_directory(fs::path(ARRIS_BUILT_FROM) / "fixtures" / "fe"))
     return fs::path(ARRIS_BUILT_FROM) / "fixtures";
-  throw Error(Fault::kInput, ErrorText{"the built-in parts are not here",
-                                       "fixtures/fe, looked for above the program",
-                                       {},
-                                       {},
-                                       "set ARRIS_FIXTURES to the fixtures folder of the checkout"});
+  throw Error(Fault::kInput,
+              ErrorText{"the built-in parts are not here", "fixtures/fe, looked for above the program",
+                        "no such folder", "the checkout that the program was built from",
+                        "set ARRIS_FIXTURES to the fixtures folder of the checkout"});
 }
 
 /// A scan as a shop would get it: noise, walls of the cut, strays, a gap, uneven density, turned on its

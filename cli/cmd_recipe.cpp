@@ -9,29 +9,15 @@
 #include "cli/console.hpp"
 #include "cli/json_output.hpp"
 #include "cli/recipe.hpp"
+#include "cli/recipe_problems.hpp"
 #include "cli/text_file.hpp"
 
 namespace arris {
 namespace {
 
-/// Problems of a recipe and of the cell that it names.
-std::vector<ErrorText> problems_of(const RecipeCheckArgs& args) {
-  const std::string text = read_text_file(args.file, args.is_cell ? "cell" : "recipe");
-  if (args.is_cell) return parse_cell(args.file, text).problems;
-  RecipeRead read = parse_recipe(args.file, text);
-  const Recipe& recipe = read.recipe;
-  const auto add_missing = [&](const std::filesystem::path& file, const std::string& key) {
-    if (file.empty() || std::filesystem::exists(file)) return;
-    read.problems.push_back({"there is no such file", key, file.string(), {}, "check the name"});
-  };
-  add_missing(recipe.part.cad, "part.cad");
-  add_missing(recipe.contour.file, "contour.file");
-  add_missing(recipe.toolpath.file, "toolpath.file");
-  add_missing(recipe.cell, "cell.file");
-  if (recipe.cell.empty() || !std::filesystem::exists(recipe.cell)) return read.problems;
-  for (ErrorText& problem : parse_cell(recipe.cell, read_text_file(recipe.cell, "cell")).problems)
-    read.problems.push_back(std::move(problem));
-  return read.problems;
+RecipeProblems problems_of(const RecipeCheckArgs& args) {
+  if (!args.is_cell) return problems_of_recipe(args.file, args.threads);
+  return {parse_cell(args.file, read_text_file(args.file, "cell")).problems, {}};
 }
 
 /// Largest extent of a mesh along x, y and z, in the file's own units.
@@ -75,11 +61,11 @@ std::string new_recipe_text(const RecipeNewArgs& args, const Eigen::Vector3d& ex
 }  // namespace
 
 int run_recipe_check(const RecipeCheckArgs& args) {
-  const std::vector<ErrorText> problems = problems_of(args);
+  const auto& [problems, remark] = problems_of(args);
   if (args.json)
     console::print(problems_json(args.file.string(), problems));
   else if (problems.empty())
-    console::print(args.file.string() + ": good");
+    console::print(args.file.string() + ": good" + (remark.empty() ? "" : ", " + remark));
   if (problems.empty()) return 0;
   if (!args.json)
     for (const ErrorText& problem : problems) console::complain(to_line(problem));
@@ -88,17 +74,17 @@ int run_recipe_check(const RecipeCheckArgs& args) {
 
 int run_recipe_print(const RecipePrintArgs& args) {
   const std::filesystem::path folder = args.file ? args.file->parent_path() : std::filesystem::path();
+  const std::string name = args.file ? args.file->string() : std::string();
   std::string text;
   if (!args.is_cell) {
-    text = print_recipe(args.file ? read_recipe(*args.file) : Recipe(), folder);
-  } else if (!args.file) {
-    text = print_cell(CellFile());
+    Recipe recipe = args.file ? read_recipe(*args.file) : Recipe();
+    text = args.json ? keys_json(name, recipe_keys(recipe), folder, absent_tables(recipe))
+                     : print_recipe(recipe, folder);
   } else {
-    const CellRead read = parse_cell(*args.file, read_text_file(*args.file, "cell"));
-    if (!read.problems.empty()) throw Error(Fault::kRecipe, read.problems.front());
-    text = print_cell(read.file, folder);
+    CellFile cell = args.file ? read_good_cell(*args.file).file : CellFile();
+    text = args.json ? keys_json(name, cell_keys(cell), folder) : print_cell(cell, folder);
   }
-  text.pop_back();  // print() ends the last line
+  if (text.ends_with('\n')) text.pop_back();  // print() ends the last line
   console::print(text);
   return 0;
 }
@@ -106,15 +92,21 @@ int run_recipe_print(const RecipePrintArgs& args) {
 int run_recipe_new(const RecipeNewArgs& args) {
   const TriangleMesh cad = read_mesh(args.cad);
   if (args.path && !std::filesystem::exists(*args.path))
-    throw Error(Fault::kInput, {"there is no such tool path", args.path->string(), {}, {}, "check the name"});
+    throw Error(Fault::kInput, {.what = "there is no such tool path",
+                                .where = args.path->string(),
+                                .found = "nothing of that name",
+                                .needed = "a file of rows x,y,z,nx,ny,nz",
+                                .next = "check the name"});
   std::string text = new_recipe_text(args, extent_of(cad));
-  if (args.out) {
-    write_new_text_file(*args.out, text, "recipe");
+  if (args.out) write_new_text_file(*args.out, text, "recipe");
+  if (args.json) {
+    console::print(new_recipe_json(args.out ? args.out->string() : std::string(), text));
+  } else if (args.out) {
     console::print("wrote " + args.out->string() + "; next: arris recipe check " + args.out->string());
-    return 0;
+  } else {
+    text.pop_back();
+    console::print(text);
   }
-  text.pop_back();
-  console::print(text);
   return 0;
 }
 

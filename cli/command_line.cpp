@@ -136,17 +136,18 @@ void add_info(CLI::App& app, const Common& common, Chosen& chosen) {
 void add_recipe_check(CLI::App& recipe, const Common& common, Chosen& chosen) {
   const auto args = std::make_shared<RecipeCheckArgs>();
   CLI::App* command =
-      add_command(recipe, "check", "Say all that is wrong in a recipe, and in the cell it names",
+      add_command(recipe, "check", "Say all that is wrong in a recipe, in the files and the cell it names",
                   "arris recipe check bracket.toml");
   command->add_option("FILE", args->file, "recipe, or cell with --cell")->required()->option_text(" ");
   command->add_flag("--cell", args->is_cell, "the file is a cell");
   command->callback([args, &common, &chosen] {
     args->json = common.json;
+    args->threads = common.threads;
     chosen = [args] { return run_recipe_check(*args); };
   });
 }
 
-void add_recipe_print(CLI::App& recipe, Chosen& chosen) {
+void add_recipe_print(CLI::App& recipe, const Common& common, Chosen& chosen) {
   const auto args = std::make_shared<RecipePrintArgs>();
   CLI::App* command =
       add_command(recipe, "print", "Print a recipe with every key, its value and what it means",
@@ -154,10 +155,13 @@ void add_recipe_print(CLI::App& recipe, Chosen& chosen) {
   command->add_option("FILE", args->file, "recipe, or cell with --cell; the defaults without it")
       ->option_text(" ");
   command->add_flag("--cell", args->is_cell, "print a cell");
-  command->callback([args, &chosen] { chosen = [args] { return run_recipe_print(*args); }; });
+  command->callback([args, &common, &chosen] {
+    args->json = common.json;
+    chosen = [args] { return run_recipe_print(*args); };
+  });
 }
 
-void add_recipe_new(CLI::App& recipe, Chosen& chosen) {
+void add_recipe_new(CLI::App& recipe, const Common& common, Chosen& chosen) {
   const auto args = std::make_shared<RecipeNewArgs>();
   CLI::App* command =
       add_command(recipe, "new", "Write a first recipe for a drawing",
@@ -171,7 +175,10 @@ void add_recipe_new(CLI::App& recipe, Chosen& chosen) {
       ->option_text("UNIT");
   command->add_option("--out", args->out, "write the recipe here instead of to the screen")
       ->option_text("FILE");
-  command->callback([args, &chosen] { chosen = [args] { return run_recipe_new(*args); }; });
+  command->callback([args, &common, &chosen] {
+    args->json = common.json;
+    chosen = [args] { return run_recipe_new(*args); };
+  });
 }
 
 void add_recipe(CLI::App& app, const Common& common, Chosen& chosen) {
@@ -179,8 +186,8 @@ void add_recipe(CLI::App& app, const Common& common, Chosen& chosen) {
       add_command(app, "recipe", "Check, print or begin a recipe", "arris recipe check bracket.toml");
   command->require_subcommand(1);
   add_recipe_check(*command, common, chosen);
-  add_recipe_print(*command, chosen);
-  add_recipe_new(*command, chosen);
+  add_recipe_print(*command, common, chosen);
+  add_recipe_new(*command, common, chosen);
 }
 
 void add_demo(CLI::App& app, const Common& common, Chosen& chosen) {

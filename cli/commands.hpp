@@ -32,12 +32,14 @@ struct RecipeCheckArgs {
   std::filesystem::path file;
   bool is_cell = false;
   bool json = false;
+  int threads = 0;
 };
 [[nodiscard]] int run_recipe_check(const RecipeCheckArgs& args);
 
 struct RecipePrintArgs {
   std::optional<std::filesystem::path> file;  ///< none: the defaults
   bool is_cell = false;
+  bool json = false;
 };
 [[nodiscard]] int run_recipe_print(const RecipePrintArgs& args);
 
@@ -45,6 +47,7 @@ struct RecipeNewArgs {
   std::filesystem::path cad;
   std::optional<std::filesystem::path> path, out;  ///< out: where the recipe is written; none: stdout
   std::string part, units = "mm";
+  bool json = false;
 };
 [[nodiscard]] int run_recipe_new(const RecipeNewArgs& args);
 

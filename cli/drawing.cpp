@@ -98,7 +98,8 @@ std::vector<Contour> accepted_by_id(const Recipe& recipe, const ContourSet& loop
         throw Error(Fault::kRecipe, {.what = "the recipe names a contour that the CAD has not",
                                      .where = recipe.part.cad.string(),
                                      .found = "contour " + std::to_string(id),
-                                     .needed = "one of " + ids_of(loops)});
+                                     .needed = "one of " + ids_of(loops),
+                                     .next = "look at them: arris contours " + recipe.part.cad.string()});
   for (const FoundContour& loop : loops.found) {
     const auto named = [&](const std::vector<int>& ids) {
       return std::find(ids.begin(), ids.end(), loop.contour.id) != ids.end();
@@ -143,7 +144,9 @@ ToolPath path_of_file(const Recipe& recipe, std::vector<std::string>& notes) {
   if (recipe.toolpath.from_contour.given) return {};
   if (recipe.toolpath.file.empty())
     throw Error(Fault::kRecipe, {.what = "the recipe names no tool path",
-                                 .needed = "toolpath.file or [toolpath.from_contour]",
+                                 .where = "part " + recipe.part.number,
+                                 .found = "neither toolpath.file nor [toolpath.from_contour]",
+                                 .needed = "one of them",
                                  .next = "to judge the shape alone: arris inspect"});
   PathCsv read =
       read_path_csv(read_text_file(recipe.toolpath.file, "tool path"), recipe.toolpath.file.string());

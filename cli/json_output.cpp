@@ -2,6 +2,9 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <type_traits>
+#include <variant>
 
 namespace arris {
 namespace {
@@ -28,6 +31,27 @@ Json contour_json(const FoundContour& found) {
           {"note", found.note}};
 }
 
+Json text_or_null(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
+
+/// The value in a slot, in JSON's own types; null when it is not set.
+Json value_json(const Key& key, const std::filesystem::path& folder) {
+  if (value_text(key, folder).empty()) return nullptr;
+  return std::visit(
+      [&](const auto* value) -> Json {
+        using Value = std::remove_cvref_t<decltype(*value)>;
+        if constexpr (std::is_same_v<Value, std::optional<double>>)
+          return Json(**value);
+        else if constexpr (std::is_same_v<Value, std::filesystem::path>)
+          return Json(
+              (folder.empty() || value->empty() ? *value : value->lexically_proximate(folder)).string());
+        else
+          return Json(*value);
+      },
+      key.slot);
+}
+
 }  // namespace
 
 std::string problems_json(const std::string& file, const std::vector<ErrorText>& problems) {
@@ -43,6 +67,24 @@ std::string contours_json(const std::string& file, const ContourSet& contours) {
   for (const FoundContour& contour : contours.found) found.push_back(contour_json(contour));
   for (const FoundContour& contour : contours.dropped) dropped.push_back(contour_json(contour));
   return text_of({{"file", file}, {"contours", found}, {"dropped", dropped}, {"notes", contours.notes}});
+}
+
+std::string keys_json(const std::string& file, const std::vector<Key>& keys,
+                      const std::filesystem::path& folder, const std::set<std::string>& absent) {
+  Json list = Json::array();
+  for (const Key& key : keys) {
+    const bool off = absent.contains(key.name.substr(0, key.name.rfind('.')));
+    list.push_back({{"key", key.name},
+                    {"value", off ? Json(nullptr) : value_json(key, folder)},
+                    {"about", key.about},
+                    {"required", key.required},
+                    {"takes", type_text(key)}});
+  }
+  return text_of({{"file", text_or_null(file)}, {"keys", list}});
+}
+
+std::string new_recipe_json(const std::string& file, const std::string& text) {
+  return text_of({{"file", text_or_null(file)}, {"recipe", text}});
 }
 
 std::string info_json(const std::string& file, const FileInfo& info) {

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "acquisition/contour_extract.hpp"
 #include "acquisition/files/file_info.hpp"
 #include "acquisition/types/error.hpp"
+#include "cli/key_table.hpp"
 
 namespace arris {
 
@@ -20,5 +23,15 @@ namespace arris {
 
 /// All of FileInfo under its field names, and "file"; lengths in units of the file.
 [[nodiscard]] std::string info_json(const std::string& file, const FileInfo& info);
+
+/// {"file", "keys": [{"key", "value", "about", "required", "takes"}]} in the order of the table; a value that
+/// is not set, or whose table is `absent`, is null. Paths relative to `folder`; file is null for the
+/// defaults.
+[[nodiscard]] std::string keys_json(const std::string& file, const std::vector<Key>& keys,
+                                    const std::filesystem::path& folder,
+                                    const std::set<std::string>& absent = {});
+
+/// {"file", "recipe"}: where a new recipe was written (null: nowhere) and its TOML text.
+[[nodiscard]] std::string new_recipe_json(const std::string& file, const std::string& text);
 
 }  // namespace arris

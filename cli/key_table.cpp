@@ -49,11 +49,18 @@ std::string range_text(const Key& key) {
   return {};
 }
 
+/// What to do about a value that a key does not take.
+std::string correct_it(const Key& key) {
+  return key.required ? "correct it: " + key.about : "correct it, or leave it out for its default";
+}
+
 std::optional<ErrorText> check_number(const Key& key, double value) {
   if (!std::isfinite(value))
-    return ErrorText{key.name + " is not a finite number", {}, fmt::format("{}", value), type_text(key), {}};
+    return ErrorText{
+        key.name + " is not a finite number", {}, fmt::format("{}", value), type_text(key), correct_it(key)};
   if (value < key.min || value > key.max)
-    return ErrorText{key.name + " is out of range", {}, fmt::format("{}", value), range_text(key), {}};
+    return ErrorText{
+        key.name + " is out of range", {}, fmt::format("{}", value), range_text(key), correct_it(key)};
   return std::nullopt;
 }
 
@@ -64,7 +71,7 @@ std::optional<ErrorText> check_text(const Key& key, const std::string& value) {
   if (contains(key.later, value))
     return ErrorText{key.name + " = " + quote(value) + " is not in this version yet",
                      {},
-                     {},
+                     "a word of a later version",
                      "one of " + joined(key.words),
                      "use " + quote(key.words.front())};
   const std::string near = nearest_name(value, key.words);
@@ -72,7 +79,7 @@ std::optional<ErrorText> check_text(const Key& key, const std::string& value) {
                    {},
                    quote(value),
                    "one of " + joined(key.words),
-                   near.empty() ? "" : "did you mean " + quote(near) + "?"};
+                   near.empty() ? correct_it(key) : "did you mean " + quote(near) + "?"};
 }
 
 template <class T>
@@ -81,8 +88,11 @@ std::optional<ErrorText> check_list(const Key& key, const std::vector<T>& values
     return ErrorText{key.name + " is empty", {}, "[]", type_text(key), "fill it in: " + key.about};
   if (!values.empty() && !key.lengths.empty() &&
       std::find(key.lengths.begin(), key.lengths.end(), values.size()) == key.lengths.end())
-    return ErrorText{
-        key.name + " has the wrong length", {}, fmt::format("{} numbers", values.size()), type_text(key), {}};
+    return ErrorText{key.name + " has the wrong length",
+                     {},
+                     fmt::format("{} numbers", values.size()),
+                     type_text(key),
+                     correct_it(key)};
   for (const T value : values)
     if (auto problem = check_number(key, static_cast<double>(value))) return problem;
   return std::nullopt;

@@ -122,7 +122,7 @@ class Reader {
       const std::string where =
           dot == std::string::npos ? file_ : file_ + ", [" + key.name.substr(0, dot) + "]";
       result_.problems.push_back(
-          {key.name + " is missing", where, {}, type_text(key), "add it: " + key.about});
+          {key.name + " is missing", where, "no such key", type_text(key), "add it: " + key.about});
     }
     return std::move(result_);
   }
@@ -140,11 +140,9 @@ class Reader {
       result_.tables.insert(name);
       walk(*node.as_table(), name + ".");
     } else
-      result_.problems.push_back({"[" + name + "] is a table, not a value",
-                                  line_of(file_, node.source()),
-                                  found_text(node),
-                                  "keys below [" + name + "]",
-                                  {}});
+      result_.problems.push_back({"[" + name + "] is a table, not a value", line_of(file_, node.source()),
+                                  found_text(node), "keys below [" + name + "]",
+                                  "write a line [" + name + "] and its keys below it"});
   }
 
   void set(const Key& key, const toml::node& node) {
@@ -154,7 +152,11 @@ class Reader {
           const auto before = *slot;
           std::optional<ErrorText> problem;
           if (!put(node, key.slot, folder_))
-            problem = ErrorText{key.name + " has the wrong type", {}, found_text(node), type_text(key), {}};
+            problem = ErrorText{key.name + " has the wrong type",
+                                {},
+                                found_text(node),
+                                type_text(key),
+                                "correct it: " + key.about};
           else
             problem = check_value(key);
           if (!problem) return;
@@ -169,9 +171,8 @@ class Reader {
     const bool table = node.is_table();
     const auto dot = name.rfind('.');
     ErrorText problem{"unknown " + std::string(table ? "table [" + name + "]" : "key " + name),
-                      line_of(file_, node.source()),
-                      {},
-                      {},
+                      line_of(file_, node.source()), table ? "a table of that name" : found_text(node),
+                      table ? "a table that arris knows" : "a key that arris knows",
                       "arris recipe print lists every key"};
     const std::string near = nearest(name, table);
     if (!near.empty())
@@ -214,10 +215,8 @@ KeysRead read_keys(const std::filesystem::path& file, const std::string& text, c
     return reader.finish();
   } catch (const toml::parse_error& error) {
     KeysRead failed;
-    failed.problems.push_back({"the file is no valid TOML",
-                               line_of(file.string(), error.source()),
-                               std::string(error.description()),
-                               {},
+    failed.problems.push_back({"the file is no valid TOML", line_of(file.string(), error.source()),
+                               std::string(error.description()), "lines key = value, below lines [table]",
                                "correct that line"});
     return failed;
   }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -139,6 +140,9 @@ struct RecipeRead {
 /// Reads a recipe. Throws Error(kInput) when the file cannot be read, Error(kRecipe) with the first problem
 /// in it.
 [[nodiscard]] Recipe read_recipe(const std::filesystem::path& file);
+
+/// Tables whose presence means something and that the recipe does not have.
+[[nodiscard]] std::set<std::string> absent_tables(const Recipe& recipe);
 
 /// The full TOML of a recipe: every key with its value, commented. Paths are written relative to `folder`.
 [[nodiscard]] std::string print_recipe(const Recipe& recipe, const std::filesystem::path& folder = {});

@@ -13,10 +13,11 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status))
-    throw Error(Fault::kInput, {"there is no such " + kind, file.string(), {}, {}, "check the name"});
+    throw Error(Fault::kInput, {"there is no such " + kind, file.string(), "nothing of that name",
+                                "a file that exists", "check the name"});
   if (!std::filesystem::is_regular_file(status))
-    throw Error(Fault::kInput,
-                {"the " + kind + " is no file", file.string(), "a folder or device", "a text file", {}});
+    throw Error(Fault::kInput, {"the " + kind + " is no file", file.string(), "a folder or device",
+                                "a text file", "check the name"});
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   if (error || size > max_bytes)
     throw Error(Fault::kInput,
@@ -26,16 +27,16 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
   std::string text((std::istreambuf_iterator<char>(stream)), {});
   if (!stream)
     throw Error(Fault::kInput,
-                {"the " + kind + " cannot be read", file.string(), {}, {}, "check its permissions"});
+                {"the " + kind + " cannot be read", file.string(), "a file that gives no bytes",
+                 "a file that can be read", "check its permissions"});
   return text;
 }
 
 void write_new_text_file(const std::filesystem::path& file, const std::string& text,
                          const std::string& kind) {
   if (std::filesystem::exists(std::filesystem::symlink_status(file)))
-    throw Error(
-        Fault::kInput,
-        {"the " + kind + " exists already", file.string(), {}, {}, "choose another name, or remove it"});
+    throw Error(Fault::kInput, {"the " + kind + " exists already", file.string(), "a file of that name",
+                                "a new name", "choose another name, or remove it"});
   write_file(file, text);
 }
 

@@ -20,17 +20,19 @@ constexpr double kNoAnchor = std::numeric_limits<double>::infinity();
 
 void check_rows(const ToolPath& nominal) {
   if (nominal.points.empty())
-    throw Error(Fault::kInput,
-                ErrorText{"the tool path is empty", nominal.source, "0 rows", "at least 1 row", ""});
+    throw Error(Fault::kInput, ErrorText{"the tool path is empty", nominal.source, "0 rows", "at least 1 row",
+                                         "export the path again"});
   for (std::size_t i = 0; i < nominal.points.size(); ++i) {
     const PathPoint& row = nominal.points[i];
     const std::string where = nominal.source + ", row " + std::to_string(i + 1);
     if (!row.tip_mm.allFinite() || !row.axis.allFinite())
       throw Error(Fault::kInput,
-                  ErrorText{"a tool path row is not finite", where, "", "six finite numbers", ""});
+                  ErrorText{"a tool path row is not finite", where, "a value that is no finite number",
+                            "six finite numbers", "export the path again"});
     if (std::abs(row.axis.norm() - 1.0) > 1e-6)
-      throw Error(Fault::kInput, ErrorText{"a tool axis is not a unit vector", where,
-                                           "length " + fixed_text(row.axis.norm(), 6), "length 1", ""});
+      throw Error(Fault::kInput,
+                  ErrorText{"a tool axis is not a unit vector", where,
+                            "length " + fixed_text(row.axis.norm(), 6), "length 1", "export the path again"});
   }
 }
 
@@ -58,8 +60,9 @@ void check_belongs(const ToolPath& nominal, const std::vector<SurfacePoint>& fee
   };
   const auto [near, far] = std::minmax_element(feet.begin(), feet.end(), nearer);
   if (near->triangle < 0)
-    throw Error(Fault::kInput, ErrorText{"the path belongs nowhere on the CAD", nominal.source,
-                                         "a CAD without a surface", "at least one triangle", ""});
+    throw Error(Fault::kInput,
+                ErrorText{"the path belongs nowhere on the CAD", nominal.source, "a CAD without a surface",
+                          "at least one triangle", "export the CAD again"});
   if (near->distance_mm <= path_reach_mm) return;
   throw Error(Fault::kInput,
               ErrorText{"the path belongs nowhere on the CAD", nominal.source,
@@ -68,6 +71,14 @@ void check_belongs(const ToolPath& nominal, const std::vector<SurfacePoint>& fee
                             fixed_text(far->distance_mm, 1) + " mm",
                         "a row within " + fixed_text(path_reach_mm, 1) + " mm (path_reach_mm)",
                         "export the path in millimetres and in the CAD's own frame"});
+}
+
+std::vector<SurfacePoint> checked_feet(const ToolPath& nominal, const SurfaceQuery& cad,
+                                       const CorrectOptions& options) {
+  check_rows(nominal);
+  std::vector<SurfacePoint> feet = feet_of(nominal, cad, options);
+  check_belongs(nominal, feet, options.path_reach_mm);
+  return feet;
 }
 
 // Each air row takes the row on the part that is nearest along its polyline, round the seam when it is
@@ -256,12 +267,14 @@ void CorrectOptions::check() const {
   need(path_reach_mm > 0.0 && std::isfinite(path_reach_mm), "path_reach_mm", path_reach_mm, "> 0");
 }
 
+void check_path_belongs(const ToolPath& nominal, const SurfaceQuery& cad, const CorrectOptions& options) {
+  (void)checked_feet(nominal, cad, options);
+}
+
 Correction correct(const ToolPath& nominal, const SurfaceQuery& cad, const DeformationField& field,
                    const RigidMotion& scan_from_cad, const CorrectOptions& options) {
   options.check();
-  check_rows(nominal);
-  const std::vector<SurfacePoint> feet = feet_of(nominal, cad, options);
-  check_belongs(nominal, feet, options.path_reach_mm);
+  const std::vector<SurfacePoint> feet = checked_feet(nominal, cad, options);
 
   Correction correction;
   correction.source = nominal.source;

@@ -74,4 +74,8 @@ struct Correction {
                                  const DeformationField& field, const RigidMotion& scan_from_cad,
                                  const CorrectOptions& options);
 
+/// What correct() throws of a path before it knows a scan: nothing when some row lies within reach of the
+/// CAD.
+void check_path_belongs(const ToolPath& nominal, const SurfaceQuery& cad, const CorrectOptions& options);
+
 }  // namespace arris

@@ -158,7 +158,8 @@ std::vector<Place> with_room(const std::vector<Place>& places, const Curve& curv
                           "offset_mm = " + fixed_text(options.offset_mm, 3) + ", " +
                               std::to_string(kept.size()) + " of " + std::to_string(places.size()) +
                               " rows left, the widest gap " + fixed_text(widest_mm, 1) + " mm",
-                          "an offset that the contour's bends and width leave room for", ""});
+                          "an offset that the contour's bends and width leave room for",
+                          "change toolpath.from_contour.offset_mm"});
   return kept;
 }
 

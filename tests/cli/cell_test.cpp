@@ -61,16 +61,18 @@ TEST(Cell, EveryKeyKeepsTheLawsOfTheTable) {
 }
 
 TEST(Cell, MessagesNameWhatWhereFoundNeeded) {
-  EXPECT_EQ(problem_of("[frames]\nrobot_from_scan = { xyz_mm = [0, 0, 0] }\n"),
-            "frames.robot_from_scan.quat_wxyz is missing (cell.toml, [frames.robot_from_scan]): needed 4 "
-            "numbers; next: add "
-            "it: scanner's frame in the robot's base: unit quaternion, w first");
+  EXPECT_EQ(
+      problem_of("[frames]\nrobot_from_scan = { xyz_mm = [0, 0, 0] }\n"),
+      "frames.robot_from_scan.quat_wxyz is missing (cell.toml, [frames.robot_from_scan]): found no such "
+      "key; needed 4 "
+      "numbers; next: add "
+      "it: scanner's frame in the robot's base: unit quaternion, w first");
   EXPECT_EQ(problem_of("[frames]\nrobot_from_scan = { xyz_mm = [0, 0, 0], quat_wxyz = [1, 1, 0, 0] }\n"),
-            "frames.robot_from_scan.quat_wxyz is no rotation: found length 1.414214; needed a quaternion of "
-            "length 1 "
-            "(cell.toml)");
+            "frames.robot_from_scan.quat_wxyz is no rotation (cell.toml): found length 1.414214; needed a "
+            "quaternion of length 1; next: correct it in the cell");
   EXPECT_EQ(problem_of(kFrames + "[robot]\nzone = 1\n"),
-            "unknown key robot.zone (cell.toml:4): next: did you mean robot.zone_mm?");
+            "unknown key robot.zone (cell.toml:4): found the whole number 1; needed a key that arris knows; "
+            "next: did you mean robot.zone_mm?");
   EXPECT_NE(problem_of(kFrames + "[tool]\nname = \"my tool\"\n").find("printable ASCII"), std::string::npos);
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "tests/cli/run_arris.hpp"
 
@@ -123,18 +124,88 @@ TEST(Program, RecipeCheckNamesEveryProblemAndMissingFiles) {
   EXPECT_NE(json.out.find("\"good\": false"), std::string::npos) << json.out;
 }
 
+/// The example's drawing, recipe and path in a folder of their own.
+void put_example(const std::filesystem::path& folder) {
+  for (const char* name : {"recipe.toml", "plate.stl", "contour.csv", "path.csv", "cell.toml"})
+    std::filesystem::copy_file(kExample / name, folder / name);
+}
+
+/// The example's recipe with one text in it, or in a file beside it, in the place of another.
+void spoil(const std::filesystem::path& file, const std::string& from, const std::string& to) {
+  std::string text = testing::text_of(file);
+  ASSERT_NE(text.find(from), std::string::npos) << file << ": " << from;
+  text.replace(text.find(from), from.size(), to);
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+/// What is wrong in a drawing or a path is named without a scan, in the words of the run that would refuse
+/// it.
+TEST(Program, RecipeCheckSaysWhatARunWouldRefuse) {
+  struct Case {
+    const char *file, *from, *to, *holds;
+  };
+  const Case cases[] = {
+      {"recipe.toml", "file = \"contour.csv\"", "", "several contours and none accepted"},
+      {"recipe.toml", "file = \"contour.csv\"", "accept = [77]", "names a contour that the CAD has not"},
+      {"recipe.toml", "cad_units = \"mm\"", "cad_units = \"m\"", "lies on no edge of the CAD"},
+      {"path.csv", "closed\n", "closed\nnan,0,0,0,0,1,1,1\n", "not a finite number in column x"},
+      {"path.csv", "", "", "belongs nowhere on the CAD"},
+      {"plate.stl", "", "", "empty"},
+  };
+  for (const Case& one : cases) {
+    const testing::TestFolder folder;
+    put_example(folder.path());
+    if (*one.from != '\0')
+      spoil(folder.path() / one.file, one.from, one.to);
+    else
+      folder.write(one.file, std::string(one.file) == "plate.stl" ? "" : "x,y,z,nx,ny,nz\n0,0,900,0,0,1\n");
+    const Ran checked = run_arris("recipe check recipe.toml", folder.path());
+    const Ran ran =
+        run_arris("run recipe.toml --out r --scan '" + (kExample / "scan.ply").string() + "'", folder.path());
+    EXPECT_EQ(checked.code, 3) << one.holds << checked.out;
+    expect_one_line(checked, one.holds);
+    EXPECT_EQ(checked.err, ran.err);
+  }
+}
+
+TEST(Program, RecipeCheckNamesWhatIsWrongInDrawingPathAndCell) {
+  const testing::TestFolder folder;
+  put_example(folder.path());
+  spoil(folder.path() / "recipe.toml", "file = \"contour.csv\"", "");
+  spoil(folder.path() / "path.csv", "closed\n", "closed\nnan,0,0,0,0,1,1,1\n");
+  spoil(folder.path() / "cell.toml", "[frames]", "[nonsense]\n[frames]");
+  const Ran ran = run_arris("recipe check recipe.toml", folder.path());
+  EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 3) << ran.err;
+  for (const char* part : {"several contours", "column x", "nonsense"})
+    EXPECT_NE(ran.err.find(part), std::string::npos) << part << "\n" << ran.err;
+}
+
+TEST(Program, RecipeCheckSaysThatWithoutAPathThereIsInspectAlone) {
+  const testing::TestFolder folder;
+  put_example(folder.path());
+  spoil(folder.path() / "recipe.toml", "file = \"path.csv\"", "");
+  const Ran ran = run_arris("recipe check recipe.toml", folder.path());
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(ran.out.find("good, for arris inspect alone"), std::string::npos) << ran.out;
+}
+
 TEST(Program, RecipeNewIsAGoodRecipe) {
   const testing::TestFolder folder;
   const std::string cad = (kExample / "plate.stl").string(), path = (kExample / "path.csv").string();
   const Ran ran = run_arris("recipe new --cad '" + cad + "' --path '" + path + "' --part A-1 --out new.toml",
                             folder.path());
   ASSERT_EQ(ran.code, 0) << ran.err;
-  const Ran checked = run_arris("recipe check new.toml", folder.path());
+  const Ran several = run_arris("recipe check new.toml", folder.path());
+  EXPECT_EQ(several.code, 3) << "the plate has four contours, and the tool follows one";
+  expect_one_line(several, "several contours");
+  const std::string accept = "\n[contour]\naccept = [2]\n";
+  folder.write("full.toml", testing::text_of(folder.path() / "new.toml") + accept);
+  const Ran checked = run_arris("recipe check full.toml", folder.path());
   EXPECT_EQ(checked.code, 0) << checked.err;
   EXPECT_EQ(run_arris("recipe new --cad '" + cad + "' --out new.toml", folder.path()).code, 3)
       << "it replaced a file";
   const Ran printed = run_arris("recipe new --cad '" + cad + "'", folder.path());
-  folder.write("second.toml", printed.out);
+  folder.write("second.toml", printed.out + accept);
   EXPECT_EQ(run_arris("recipe check second.toml", folder.path()).code, 0) << printed.out;
 }
 
@@ -162,6 +233,57 @@ TEST(Program, ContoursListsDrawsAndChooses) {
   const Ran none = run_arris("contours " + cad + " --accept 99 --out d.json", folder.path());
   EXPECT_EQ(none.code, 2);
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "d.json"));
+}
+
+TEST(Program, ContoursOverwritesNothingButItsOwn) {
+  const testing::TestFolder folder;
+  put_example(folder.path());
+  std::filesystem::create_symlink("plate.stl", folder.path() / "link.stl");
+  folder.write("notes.json", "{\"mine\": 1}");
+  const std::string begin = "contours plate.stl --recipe recipe.toml --accept 1 ";
+  const std::pair<const char*, const char*> cases[] = {
+      {"--out plate.stl", "plate.stl"},
+      {"--out link.stl", "link.stl"},
+      {"--out recipe.toml", "recipe.toml"},
+      {"--out path.csv", "path.csv"},
+      {"--out notes.json", "notes.json"},
+      {"--png plate.stl", "plate.stl"},
+      {"--png ./recipe.toml", "recipe.toml"},
+      {"--png notes.json", "notes.json"},
+      {"--out new.json --png new.json", "new.json"},
+  };
+  for (const auto& [options, file] : cases) {
+    const std::string before = testing::text_of(folder.path() / file);
+    const Ran ran = run_arris(begin + options, folder.path());
+    EXPECT_EQ(ran.code, 3) << options;
+    expect_one_line(ran, file);
+    for (const char* part : {"(", "found ", "needed ", "next: "})
+      EXPECT_NE(ran.err.find(part), std::string::npos) << part << ran.err;
+    EXPECT_TRUE(ran.out.empty()) << ran.out;
+    EXPECT_EQ(testing::text_of(folder.path() / file), before) << options;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "new.json"));
+  for (int time = 0; time < 2; ++time)
+    EXPECT_EQ(run_arris(begin + "--out c.json --png c.png", folder.path()).code, 0) << "a former one may go";
+  const Ran scan = run_arris(
+      "contours '" + (kExample / "scan.ply").string() + "' --recipe recipe.toml --accept 1 --out plate.stl",
+      folder.path());
+  EXPECT_EQ(scan.code, 3);
+  expect_one_line(scan, "drawing");
+}
+
+TEST(Program, FullDiskOfTheSummaryLeavesNoFolder) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
+  const testing::TestFolder folder;
+  for (const char* json : {"", "--json "}) {
+    const Ran ran = run_arris("run '" + (kExample / "recipe.toml").string() + "' --scan '" +
+                                  (kExample / "scan.ply").string() + "' --out r " + json + "> /dev/full",
+                              folder.path());
+    EXPECT_EQ(ran.code, 3);
+    for (const char* part : {"(stdout)", "found No space left", "needed ", "next: "})
+      expect_one_line(ran, part);
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "a hidden folder counts";
+  }
 }
 
 TEST(Program, InfoSaysWhatAFileHolds) {

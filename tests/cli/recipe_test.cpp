@@ -214,46 +214,59 @@ TEST(Recipe, RegistrationDefaultsAreThoseOfTheRoom) {
 TEST(Recipe, MessagesNameWhatWhereFoundNeededNext) {
   const std::pair<std::string, std::string> cases[] = {
       {"[part]\nnumbr = \"A\"\n",
-       "unknown key part.numbr (shop/part.toml:2): next: did you mean part.number?"},
+       "unknown key part.numbr (shop/part.toml:2): found the text \"A\"; needed a key that arris knows; "
+       "next: did you mean part.number?"},
       {"[registration.subdivison]\nband_mm = 3.0\n",
-       "unknown table [registration.subdivison] (shop/part.toml:1): next: did you mean "
+       "unknown table [registration.subdivison] (shop/part.toml:1): found a table of that name; needed a "
+       "table that arris knows; next: did you mean "
        "registration.subdivision?"},
       {"[scan]\ncad_units = \"mm\"\n",
-       "unknown key scan.cad_units (shop/part.toml:2): next: did you mean part.cad_units?"},
+       "unknown key scan.cad_units (shop/part.toml:2): found the text \"mm\"; needed a key that arris knows; "
+       "next: did you mean part.cad_units?"},
       {"[part]\nzzzzzz = 1\n",
-       "unknown key part.zzzzzz (shop/part.toml:2): next: arris recipe print lists every key"},
+       "unknown key part.zzzzzz (shop/part.toml:2): found the whole number 1; needed a key that arris knows; "
+       "next: arris recipe print lists every key"},
       {"part = 3\n",
        "[part] is a table, not a value (shop/part.toml:1): found the whole number 3; needed keys below "
-       "[part]"},
+       "[part]; next: write a line [part] and its keys below it"},
       {"[tolerance]\nmax_correction_mm = \"20\"\n",
        "tolerance.max_correction_mm has the wrong type (shop/part.toml:2): found the text \"20\"; needed a "
        "number, 0.001 to "
-       "10000"},
+       "10000; next: correct it: largest move beyond the rigid motion; a path that needs more is refused"},
       {"[registration.subdivision]\nmax_iterations = 3.5\n",
        "registration.subdivision.max_iterations has the wrong type (shop/part.toml:2): found the number 3.5; "
        "needed a whole "
-       "number, 1 to 10000"},
+       "number, 1 to 10000; next: correct it: rounds of matching at most (the paper's k_max)"},
       {"[registration.subdivision]\noverlap = 0.9\n",
-       "registration.subdivision.overlap is out of range (shop/part.toml:2): found 0.9; needed 0 to 0.5"},
+       "registration.subdivision.overlap is out of range (shop/part.toml:2): found 0.9; needed 0 to 0.5; "
+       "next: correct it, or leave it out for its default"},
       {"[scan]\nvoxel_mm = nan\n",
-       "scan.voxel_mm is not a finite number (shop/part.toml:2): found nan; needed a number, 0 to 100"},
+       "scan.voxel_mm is not a finite number (shop/part.toml:2): found nan; needed a number, 0 to 100; next: "
+       "correct it, or leave it out for its default"},
       {"[part]\nstate = \"clampd\"\n",
        "part.state has no such choice (shop/part.toml:2): found \"clampd\"; needed one of clamped, free; "
        "next: did you mean "
        "\"clamped\"?"},
       {"[scan]\nseen_from = [1, 2]\n",
-       "scan.seen_from has the wrong length (shop/part.toml:2): found 2 numbers; needed 3 numbers"},
+       "scan.seen_from has the wrong length (shop/part.toml:2): found 2 numbers; needed 3 numbers; next: "
+       "correct it, or leave it out for its default"},
       {"[scan]\nseen_from = [1, 2, \"3\"]\n",
-       "scan.seen_from has the wrong type (shop/part.toml:2): found a list of 3; needed 3 numbers"},
+       "scan.seen_from has the wrong type (shop/part.toml:2): found a list of 3; needed 3 numbers; next: "
+       "correct it: x, y, z (mm, scan frame) of a point on the air side; tells the two sides of a flat part "
+       "apart"},
       {"[contour]\naccept = 1\n",
        "contour.accept has the wrong type (shop/part.toml:2): found the whole number 1; needed a list of "
-       "whole numbers, 1 or "
-       "more"},
+       "whole numbers, 1 or more; next: correct it: ids of the drawing's contours to use (arris contours CAD "
+       "lists them); none: all, if there is one"},
       {"[contour]\naccept = [0]\n",
-       "contour.accept is out of range (shop/part.toml:2): found 0; needed 1 or more"},
-      {"schema = 2\n", "schema is out of range (shop/part.toml:1): found 2; needed 1"},
+       "contour.accept is out of range (shop/part.toml:2): found 0; needed 1 or more; next: correct it, or "
+       "leave it out for its default"},
+      {"schema = 2\n",
+       "schema is out of range (shop/part.toml:1): found 2; needed 1; next: correct it, or leave it out for "
+       "its default"},
       {"[part]\nnumber = 1979-05-27\n",
-       "part.number has the wrong type (shop/part.toml:2): found a date or time; needed a text in quotes"},
+       "part.number has the wrong type (shop/part.toml:2): found a date or time; needed a text in quotes; "
+       "next: correct it: part number, printed on every result"},
       {"[part]\nnumber = \"\"\n",
        "part.number is empty (shop/part.toml:2): found \"\"; needed a text in quotes; next: fill it in: part "
        "number, "
@@ -291,7 +304,8 @@ TEST(Recipe, MissingKeysAreNamedWithTheirTable) {
   const RecipeRead read = parse("schema = 1\n");
   ASSERT_EQ(read.problems.size(), 4u);
   EXPECT_EQ(to_line(read.problems[1]),
-            "part.cad is missing (shop/part.toml, [part]): needed a file name in quotes; next: add it: mesh "
+            "part.cad is missing (shop/part.toml, [part]): found no such key; needed a file name in quotes; "
+            "next: add it: mesh "
             "of the drawing "
             "(stl, ply, off)");
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <regex>
 
 #include "fixtures/synthetic/analytic_part.hpp"
 #include "tests/end_to_end/job.hpp"
@@ -158,7 +159,7 @@ std::vector<Bad> bad_scans() {
          scan.normals.resize(12);
          job.put_scan("scan.ply", scan);
        },
-       {"12", "30"}},
+       {"scan.ply", "12", "30"}},
       {"OnePoint",
        [](const Job& job) {
          SyntheticScan scan = sheet_scan();
@@ -166,9 +167,9 @@ std::vector<Bad> bad_scans() {
          scan.normals.resize(1);
          job.put_scan("scan.ply", scan);
        },
-       {"1", "30"}},
-      {"ScanInMetres", [](const Job& job) { put_scaled(job, 0.001); }, {"unit", "1000"}},
-      {"ScanInInches", [](const Job& job) { put_scaled(job, 1.0 / 25.4); }, {"unit", "25.4"}},
+       {"scan.ply", "1", "30"}},
+      {"ScanInMetres", [](const Job& job) { put_scaled(job, 0.001); }, {"scan.ply", "unit", "1000"}},
+      {"ScanInInches", [](const Job& job) { put_scaled(job, 1.0 / 25.4); }, {"scan.ply", "unit", "25.4"}},
       {"MirroredScan",
        [](const Job& job) {
          SyntheticScan scan = plate_scan();
@@ -176,7 +177,7 @@ std::vector<Bad> bad_scans() {
            for (Vector3d& v : *list) v.y() = -v.y();
          job.put_scan("scan.ply", scan);
        },
-       {"mirror"},
+       {"scan.ply", "mirror"},
        "example"},
       {"NoPointsInTheBand",
        [](const Job& job) {
@@ -184,7 +185,7 @@ std::vector<Bad> bad_scans() {
          job.replace("recipe.toml", "[scan]",
                      "[scan]\ninitial = { scan_from_cad = [9000, 0, 0, 1, 0, 0, 0], within_deg = 30 }");
        },
-       {"band"}},
+       {"scan.ply", "band"}},
   };
 }
 
@@ -226,6 +227,15 @@ std::vector<Bad> bad_drawings() {
       recipe_case("PathThatIsNotANumber",
                   [](const Job& job) { job.put("path.csv", "x,y,z,nx,ny,nz\n1,2,3,0,0,1\n1,2,oh,0,0,1\n"); },
                   {"path.csv", "3", "oh"}),
+      recipe_case("PathThatIsNotFinite",
+                  [](const Job& job) { job.put("path.csv", "x,y,z,nx,ny,nz\n1,2,nan,0,0,1\n"); },
+                  {"path.csv", "line 2", "nan"}),
+      recipe_case("PathWithoutRows", [](const Job& job) { job.put("path.csv", "x,y,z,nx,ny,nz\n"); },
+                  {"path.csv", "no rows"}),
+      recipe_case(
+          "ContourThatTheCadHasNot",
+          [](const Job& job) { job.replace("recipe.toml", "file = \"contour.csv\"\n", "accept = [77]\n"); },
+          {"cad.stl", "77"}),
   };
 }
 
@@ -245,6 +255,12 @@ std::vector<Bad> bad_recipes() {
                   {"recipe.toml", "furlong", "inch"}),
       recipe_case("ValueOutOfBounds", swap("max_correction_mm = 20.0", "max_correction_mm = -1.0"),
                   {"recipe.toml", "max_correction_mm", "-1"}),
+      recipe_case("SchemaOfLater", swap("schema = 1", "schema = 2"), {"recipe.toml", "schema", "2"}),
+      recipe_case("MethodUnknown", swap("[tolerance]", "[registration]\nmethod = \"guess\"\n[tolerance]"),
+                  {"recipe.toml", "guess", "surface"}),
+      recipe_case("WrongType", swap("max_correction_mm = 20.0", "max_correction_mm = \"20\""),
+                  {"recipe.toml", "max_correction_mm", "20"}),
+      recipe_case("NoToolPath", swap("file = \"path.csv\"", ""), {"no tool path", "arris inspect"}),
       recipe_case("RecipeThatIsNoToml", swap("[scan]", "[scan"), {"recipe.toml"}),
       recipe_case("EmptyRecipe", [](const Job& job) { job.put("recipe.toml", ""); }, {"recipe.toml"}),
       recipe_case("ProcessOfLater", swap("process = \"deburr\"", "process = \"mill\""),
@@ -280,6 +296,9 @@ std::vector<Bad> bad_outputs() {
   };
 }
 
+/// "arris: what (where): found ..; needed ..; next: ..", none of them empty.
+const std::regex kFiveParts(R"(arris: [^(]\S.* \(\S.*\): found \S.*; needed \S.*; next: \S.*\n)");
+
 class BadInput : public ::testing::TestWithParam<Bad> {};
 
 TEST_P(BadInput, IsThreeInOneLineAndLeavesNothing) {
@@ -294,6 +313,7 @@ TEST_P(BadInput, IsThreeInOneLineAndLeavesNothing) {
   EXPECT_TRUE(ran.out.empty()) << ran.out;
   for (const std::string& part : bad.holds)
     EXPECT_NE(ran.err.find(part), std::string::npos) << part << ": " << ran.err;
+  EXPECT_TRUE(std::regex_match(ran.err, kFiveParts)) << ran.err;
   EXPECT_EQ(job.names(), before);
   if (before.contains("out") && std::filesystem::is_directory(job.file("out"))) {
     EXPECT_EQ(job.names("out"), std::set<std::string>{"mine.txt"});

@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
 
 #include "fixtures/synthetic/analytic_part.hpp"
 #include "tests/end_to_end/job.hpp"
@@ -106,7 +109,12 @@ TEST(Json, OfEveryCommandParses) {
   job.put_scan("scan.ply", testing::fe_scan("sheet", testing::usual_options("sheet"), 65));
   for (const char* line :
        {"info scan.ply --json", "info cad.stl --json", "contours cad.stl --json", "contours scan.ply --json",
-        "recipe check recipe.toml --json", "run recipe.toml --scan scan.ply --out out --json"}) {
+        "recipe check recipe.toml --json", "recipe print --json", "recipe print --json recipe.toml",
+        "recipe print --json --cell", "recipe print --json --cell cell.toml",
+        "recipe new --json --cad cad.stl", "recipe new --json --cad cad.stl --out new.toml",
+        "run recipe.toml --scan scan.ply --out out --json",
+        "inspect recipe.toml --scan scan.ply --out shape --json",
+        "batch recipe.toml scan.ply --out many --json", "demo --out demo --json"}) {
     const Ran ran = job.arris(line);
     EXPECT_TRUE(processed(ran)) << line << ran.code << ran.err;
     EXPECT_TRUE(json::accept(ran.out)) << line << "\n" << ran.out;
@@ -114,6 +122,50 @@ TEST(Json, OfEveryCommandParses) {
   const json run = json::parse(job.arris("run recipe.toml --scan scan.ply --out out --force --json").out);
   EXPECT_TRUE(run.is_object());
   EXPECT_EQ(job.names("out"), testing::kAcceptedFiles) << "--force replaces a run's own folder";
+}
+
+TEST(Json, OfRecipePrintHoldsEveryKeyWithItsValue) {
+  const Job job("fe/sheet");
+  const json printed = json::parse(job.arris("recipe print recipe.toml --json").out);
+  EXPECT_EQ(printed.at("file"), "recipe.toml");
+  std::map<std::string, json> keys;
+  for (const json& key : printed.at("keys")) {
+    EXPECT_FALSE(key.at("about").get<std::string>().empty()) << key;
+    keys[key.at("key")] = key;
+  }
+  EXPECT_EQ(keys.at("part.cad").at("value"), "cad.stl");
+  EXPECT_EQ(keys.at("part.cad").at("required"), true);
+  EXPECT_EQ(keys.at("scan.initial.scan_from_cad").at("value"), nullptr) << "a table that is not there";
+  EXPECT_TRUE(keys.at("toolpath.path_reach_mm").at("value").is_number());
+  EXPECT_EQ(keys.at("toolpath.path_reach_mm").at("required"), false);
+  EXPECT_EQ(keys.at("contour.accept").at("value"), nullptr) << "not set";
+  // The TOML that a person reads has a line a key, commented out or not.
+  std::istringstream toml(job.arris("recipe print recipe.toml").out);
+  const std::regex key_line("(# )?[a-z_0-9]+ = .*");
+  std::size_t lines = 0;
+  for (std::string line; std::getline(toml, line);) lines += std::regex_match(line, key_line) ? 1 : 0;
+  EXPECT_EQ(lines, keys.size());
+}
+
+TEST(Json, OfRecipePrintHoldsACellsLists) {
+  const Job job("fe/sheet");
+  const json printed = json::parse(job.arris("recipe print --cell cell.toml --json").out);
+  for (const json& key : printed.at("keys"))
+    if (key.at("key") == "frames.robot_from_scan.xyz_mm") {
+      EXPECT_EQ(key.at("value"), json({850.0, 0.0, 400.0}));
+      return;
+    }
+  FAIL() << printed;
+}
+
+TEST(Json, OfRecipeNewHoldsTheRecipeAndWhereItIs) {
+  const Job job("fe/sheet");
+  const json shown = json::parse(job.arris("recipe new --cad cad.stl --json").out);
+  EXPECT_EQ(shown.at("file"), nullptr);
+  const json written = json::parse(job.arris("recipe new --cad cad.stl --out new.toml --json").out);
+  EXPECT_EQ(written.at("file"), "new.toml");
+  EXPECT_EQ(written.at("recipe"), text_of(job.file("new.toml")));
+  EXPECT_EQ(written.at("recipe"), shown.at("recipe"));
 }
 
 TEST(Demo, EndsInToleranceWithAReport) {

@@ -18,6 +18,8 @@ using std::string_view;
 const std::vector<string> kAxes = {"x", "y", "z", "nx", "ny", "nz"};
 const std::vector<string> kKnown = {"x", "y", "z", "nx", "ny", "nz", "path", "feed_mm_s", "closed", "index"};
 
+constexpr const char* kCorrect = "correct that line, or export the tool path again";
+
 string_view trimmed(string_view text) {
   const auto first = text.find_first_not_of(" \t\r");
   if (first == string_view::npos) return {};
@@ -83,12 +85,13 @@ class Reader {
 
  private:
   [[noreturn]] void fail(const string& what, const string& found, const string& needed,
-                         const string& next = "") const {
+                         const string& next = kCorrect) const {
     throw Error(Fault::kInput,
                 ErrorText{what, source_ + ", line " + std::to_string(line_), found, needed, next});
   }
   [[noreturn]] void fail_file(const string& what, const string& found) const {
-    throw Error(Fault::kInput, ErrorText{what, source_, found, "at least 1 row of x,y,z,nx,ny,nz", ""});
+    throw Error(Fault::kInput, ErrorText{what, source_, found, "at least 1 row of x,y,z,nx,ny,nz",
+                                         "export the tool path again"});
   }
   static string_view trimmed_all(string_view text) {
     const auto first = text.find_first_not_of(" \t\r\n");
