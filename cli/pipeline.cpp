@@ -23,17 +23,21 @@ constexpr double kMirrorAlikeRatio = 1.3;  // score of the mirror image over the
 
 /// What makes a start pose impossible because the input is wrong, not because the data are poor.
 void refuse_wrong_input(const CoarseAlignment& coarse, const Recipe& recipe) {
-  if (coarse.inverted)  // of a nearly flat part that is a mirror image as well
-    throw Error(Fault::kInput,
-                {.what = coarse.mirrored ? "the CAD mesh is inverted, or the scan is mirrored"
-                                         : "the CAD mesh is inverted, or the scan's normals are",
-                 .found = coarse.reason,
-                 .needed = "triangle normals of the mesh and normals of the scan that point out of the "
-                           "material, and a right-handed scan of the face that the recipe names as scanned",
-                 .next = "look which way the mesh's normals point, then how the scan was exported; check "
-                         "part.cad_is"});
-  if (coarse.mirrored) {
-    const bool is_face = recipe.part.cad_is != "scanned_face";  // the face beyond is the mirror image
+  const bool is_face = recipe.part.cad_is != "scanned_face";  // the face beyond is the mirror image
+  if (coarse.inverted && !(coarse.mirrored && is_face))       // a nearly flat part is its own mirror image
+    throw Error(
+        Fault::kInput,
+        {.what =
+             std::string("the CAD mesh is inverted, or ") + (is_face ? "the scan shows the other face"
+                                                             : coarse.mirrored ? "the scan is mirrored"
+                                                                               : "the scan's normals are"),
+         .found = coarse.reason,
+         .needed =
+             "triangle normals of the mesh and normals of the scan that point out of the material, and a "
+             "right-handed scan of the face that the recipe names as scanned",
+         .next =
+             "look which way the mesh's normals point, then how the scan was exported; check part.cad_is"});
+  if (coarse.mirrored)
     throw Error(
         Fault::kInput,
         {.what = is_face ? "the scan is mirrored, or shows the other face" : "the scan is mirrored",
@@ -42,7 +46,6 @@ void refuse_wrong_input(const CoarseAlignment& coarse, const Recipe& recipe) {
                            : "a right-handed scan of this part",
          .next = is_face ? "check part.cad_is, contour.accept and toolpath.face; or export the scan again"
                          : "export the scan again without mirroring, or take the drawing of the other hand"});
-  }
   if (coarse.no_points)
     throw Error(Fault::kInput, {.what = "no points in the band",
                                 .found = "no scan point near the part at the initial pose",
