@@ -14,8 +14,8 @@ struct RecipeProblems {
   std::string remark;  ///< of a good one: what it is not good for; else empty
 };
 
-/// Problems of a recipe and of the cell that it names. If its keys are good and its files are there, the drawing
-/// and the tool path are read as a run reads them, so that its words come without a scan.
+/// Problems of a recipe and of the cell that it names. If its keys are good and its files are there, the
+/// drawing and the tool path are read as a run reads them, so that its words come without a scan.
 ///   cost  that of reading the drawing: 0.1 s for 100,000 triangles
 [[nodiscard]] RecipeProblems problems_of_recipe(const std::filesystem::path& file, int threads);
 

@@ -98,9 +98,13 @@ void judge_seams(const CadModel& cad, Registration& result) {
   }
 }
 
+double explained_residual_mm(const ScanModel& scan) {
+  return kResidualMm + kResidualSigmas * scan.noise_sigma_mm;
+}
+
 void judge_residuals(const CadModel& cad, const ScanModel& scan, Registration& result) {
   for (std::size_t c = 0; c < result.contours.size(); ++c) {
-    const double limit_mm = kResidualMm + kResidualSigmas * scan.noise_sigma_mm;
+    const double limit_mm = explained_residual_mm(scan);
     if (result.contours[c].edge.residual_sigma_mm < limit_mm) continue;
     char text[200];
     std::snprintf(

@@ -12,6 +12,9 @@ void judge_coverage(const CadModel& cad, const RegistrationOptions& options, Reg
 /// Where two neighbouring segments disagree about the place of their common cut, one of them is wrong.
 void judge_seams(const CadModel& cad, Registration& result);
 
+/// Robust residual normal to the surface up to which noise and the method explain it; mm.
+[[nodiscard]] double explained_residual_mm(const ScanModel& scan);
+
 /// Heights beside the edge that scatter far more than the scanner's noise are not explained by the field.
 void judge_residuals(const CadModel& cad, const ScanModel& scan, Registration& result);
 

@@ -16,7 +16,6 @@ constexpr double kMotionStepMm = 10.0;                // the field along a conto
 constexpr double kJudgeStepMm = 5.0;                  // and its uncertainty
 constexpr double kSlideShare = 0.5;                   // of the worst variance: then the whole contour slides
 constexpr double kNearSpacings = 3.0, kNearMm = 3.0;  // a scan point this near makes a place "data"
-constexpr double kResidualMm = 0.15, kResidualSigmas = 5.0;  // as beside an edge that is followed
 
 /// Edge of a contour that is not there yet: none.
 EdgeFit no_edge(const Curve& curve, const EdgeFitOptions& options) {
@@ -106,8 +105,7 @@ void judge_cut(const CadModel& cad, const ScanModel& scan, const std::vector<See
   }
   judge_coverage(cad, options, result);
   result.stage_residual_mm = {{"rigid", result.rigid.surface_rms_mm}, {"surface", sigma_mm}};
-  const double limit_mm = kResidualMm + kResidualSigmas * scan.noise_sigma_mm;
-  if (sigma_mm < limit_mm) return;
+  if (sigma_mm < explained_residual_mm(scan)) return;
   char text[200];
   std::snprintf(text, sizeof text, "the surface is not explained: residual %.2f mm, scanner noise %.2f mm",
                 sigma_mm, scan.noise_sigma_mm);

@@ -21,8 +21,6 @@ class BoxTree {
   /// One box an item; none may be empty or hold what is not finite.
   explicit BoxTree(std::span<const Eigen::AlignedBox3d> boxes_mm);
 
-  [[nodiscard]] bool empty() const { return nodes_.empty(); }
-
   /// Calls look_at(item) for the items whose box may reach within the limit of the query, nearer boxes first;
   /// look_at answers the limit to go on with, mm squared, that or a smaller one. An item exactly at the limit
   /// is looked at. The query must be finite.

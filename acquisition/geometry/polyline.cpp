@@ -7,8 +7,6 @@
 #include "acquisition/types/error.hpp"
 
 namespace arris {
-namespace {}  // namespace
-
 Curve::Curve(const Contour& contour) : contour_(contour) {
   const std::size_t count = contour_.points_mm.size();
   if (count < 3) contour_.closed = false;  // two points enclose nothing: their chord is walked once
