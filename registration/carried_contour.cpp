@@ -43,8 +43,10 @@ CarriedContour::CarriedContour(const std::vector<ContourStation>& stations, bool
   curve_.emplace(carried);
 }
 
-CarriedContour::Foot CarriedContour::foot(const Eigen::Vector3d& p_cad_mm) const {
-  const CurveFoot near = curve_->nearest(p_cad_mm);
+std::optional<CarriedContour::Foot> CarriedContour::foot_within(const Eigen::Vector3d& p_cad_mm,
+                                                                double reach_mm) const {
+  const CurveFoot near = curve_->nearest_within(p_cad_mm, reach_mm);
+  if (near.segment < 0) return std::nullopt;
   Foot foot;
   foot.distance_mm = near.distance_mm;
   const std::size_t first = static_cast<std::size_t>(near.segment), n = stations_.size();

@@ -37,7 +37,8 @@ class CarriedContour {
     double height_mm = 0.0;   ///< out of the material, from the tangent plane at the edge
     double distance_mm = 0.0;
   };
-  [[nodiscard]] Foot foot(const Eigen::Vector3d& p_cad_mm) const;
+  /// The nearest place of the contour; none when it is reach_mm away or farther.
+  [[nodiscard]] std::optional<Foot> foot_within(const Eigen::Vector3d& p_cad_mm, double reach_mm) const;
   [[nodiscard]] const Eigen::Vector3d& inward(std::size_t station) const { return inward_[station]; }
   [[nodiscard]] const Eigen::Vector3d& normal(std::size_t station) const { return normal_[station]; }
 

@@ -50,12 +50,13 @@ void EdgeStrips::update(const std::vector<SurfacePair>& pairs, const std::vector
       point.foot.distance_mm = reach_mm;
       for (std::size_t e = 0; e < carried.size(); ++e) {
         if (!carried[e]) continue;
-        const CarriedContour::Foot foot = carried[e]->foot(pairs[i].p_mm);
-        if (foot.distance_mm >= point.foot.distance_mm) continue;
-        const double height_mm = pairs[i].on_face ? pairs[i].residual_mm : foot.height_mm;
-        const bool beside = foot.across_mm < strip_mm_ && std::abs(height_mm) < gate_mm;
-        point = {e, foot,
-                 beside ? fan_weight(edges_[e].stations[foot.station].fan_per_mm, foot.across_mm) : 0.0};
+        const std::optional<CarriedContour::Foot> foot =
+            carried[e]->foot_within(pairs[i].p_mm, point.foot.distance_mm);
+        if (!foot) continue;
+        const double height_mm = pairs[i].on_face ? pairs[i].residual_mm : foot->height_mm;
+        const bool beside = foot->across_mm < strip_mm_ && std::abs(height_mm) < gate_mm;
+        point = {e, *foot,
+                 beside ? fan_weight(edges_[e].stations[foot->station].fan_per_mm, foot->across_mm) : 0.0};
       }
     }
   });

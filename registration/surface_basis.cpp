@@ -15,6 +15,7 @@ constexpr double kCosSameSheet = 0.2;
 constexpr double kQuadraticRidge = 1e-6;  // of the moment matrix, on the second-order terms only
 constexpr double kWorstPivotRatio = 1e-9;
 constexpr std::size_t kFewestNodes = 6;
+constexpr std::size_t kUsualNodes = 32;    // that a row has, at most, on an evenly covered surface
 constexpr double kMostCellsASide = 100.0;  // contours may lie far apart; wider cells serve as well
 
 /// Wendland's C2 function; 1 at 0, 0 from q = 1 on.
@@ -62,6 +63,9 @@ BasisRow SurfaceBasis::row(const Eigen::Vector3d& p_cad_mm, const Eigen::Vector3
   if (order_.empty()) return row;
   const Eigen::Array3i at = ((p_cad_mm - low_mm_) / cell_mm_).array().floor().cast<int>();
   std::vector<double> weights;
+  row.node.reserve(kUsualNodes);
+  row.weight.reserve(kUsualNodes);
+  weights.reserve(kUsualNodes);
   const Eigen::Array3i low = (at - 1).max(0), high = (at + 1).min(count_ - 1);
   for (int z = low.z(); z <= high.z(); ++z)
     for (int y = low.y(); y <= high.y(); ++y)
@@ -96,8 +100,10 @@ BasisRow SurfaceBasis::row(const Eigen::Vector3d& p_cad_mm, const Eigen::Vector3
   const double slope = 1.0 / radius_mm_, bend = slope * slope;
   BasisRow::Weights units;
   units << 1.0, slope, slope, bend, bend, bend;
+  Eigen::Matrix<double, 6, 6> inverse = solver.solve(Eigen::Matrix<double, 6, 6>::Identity());
+  inverse = units.asDiagonal() * inverse;
   for (std::size_t k = 0; k < weights.size(); ++k)
-    row.weight[k] = units.cwiseProduct(solver.solve(Eigen::Matrix<double, 6, 1>(weights[k] * row.weight[k])));
+    row.weight[k] = weights[k] * (inverse * row.weight[k]).eval();
   return row;
 }
 

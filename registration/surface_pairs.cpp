@@ -12,6 +12,7 @@ namespace arris {
 namespace {
 
 constexpr double kCosNormalsAgree = 0.5;  // correspondences need normals within 60 degrees
+constexpr double kSameFootMm = 0.1;  // beside its foot a point still sees the tangent plane: off by < 0.1 um
 constexpr std::size_t kChunk = 256;
 
 bool normals_agree(const ScanModel& scan, const Eigen::Vector3d& deformed, const Eigen::Vector3d& measured) {
@@ -19,19 +20,26 @@ bool normals_agree(const ScanModel& scan, const Eigen::Vector3d& deformed, const
   return (scan.side == SideKnown::kYes ? cosine : std::abs(cosine)) > kCosNormalsAgree;
 }
 
+/// Residual to the deformed surface at the pair's foot; returns how far the point lies beside that foot.
+double look_from_foot(const std::vector<Eigen::Vector3d>& shift_mm, SurfacePair& pair) {
+  const LocalShape shape = local_shape(pair.row, shift_mm);
+  const Eigen::Vector3d apart_mm = pair.p_mm - pair.foot_mm - shape.shift_mm;
+  pair.guess_mm = shape.shift_mm;
+  pair.normal = shape.normal;
+  pair.residual_mm = shape.normal.dot(apart_mm);
+  return (apart_mm - pair.residual_mm * shape.normal).norm();
+}
+
 void find_partner(const CadModel& cad, const SurfaceBasis& basis,
                   const std::vector<Eigen::Vector3d>& shift_mm, double reach_mm, SurfacePair& pair) {
-  pair.on_face = false;
+  if (pair.row.usable() && look_from_foot(shift_mm, pair) < kSameFootMm) return;
   pair.row = {};
   const SurfacePoint foot = cad.surface.closest(pair.p_mm - pair.guess_mm, reach_mm);
   if (foot.triangle < 0) return;
+  pair.foot_mm = foot.foot_mm;
+  pair.on_border = foot.on_border;
   pair.row = basis.row(foot.foot_mm, cad.smooth_normal(foot));
-  if (!pair.row.usable()) return;
-  const LocalShape shape = local_shape(pair.row, shift_mm);
-  pair.guess_mm = shape.shift_mm;
-  pair.normal = shape.normal;
-  pair.residual_mm = shape.normal.dot(pair.p_mm - foot.foot_mm - shape.shift_mm);
-  pair.on_face = !foot.on_border;
+  if (pair.row.usable()) look_from_foot(shift_mm, pair);
 }
 
 }  // namespace
@@ -65,8 +73,8 @@ void pair_surface(const CadModel& cad, const ScanModel& scan, const std::vector<
       SurfacePair& pair = pairs[i];
       pair.p_mm = cad_from_scan * scan.points_mm[points[i]];
       find_partner(cad, basis, shift_mm, reach_mm, pair);
-      if (pair.on_face)
-        pair.on_face = normals_agree(scan, pair.normal, cad_from_scan.linear() * scan.normals[points[i]]);
+      pair.on_face = pair.row.usable() && !pair.on_border &&
+                     normals_agree(scan, pair.normal, cad_from_scan.linear() * scan.normals[points[i]]);
     }
   });
 }

@@ -13,10 +13,12 @@ namespace arris {
 /// One scan point and its partner on the deformed CAD; CAD frame.
 struct SurfacePair {
   BasisRow row;                                        ///< at the partner's nominal place
+  Eigen::Vector3d foot_mm = Eigen::Vector3d::Zero();   ///< that place
   Eigen::Vector3d p_mm = Eigen::Vector3d::Zero();      ///< the scan point
   Eigen::Vector3d guess_mm = Eigen::Vector3d::Zero();  ///< shift at the last partner: where to look next
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();   ///< deformed
   double residual_mm = 0.0;                            ///< out of the material
+  bool on_border = false;                              ///< the partner lies on the rim of the face
   bool on_face = false;  ///< the partner lies on the face, not on its rim, and the normals agree
 };
 
@@ -27,7 +29,8 @@ struct SurfacePair {
                                                    int threads);
 
 /// Renews the partner of every pair: the nominal surface point nearest to the scan point with the shift of
-/// its last partner taken off (a fixed point; exact once the shifts stand still). Normals within 60 degrees.
+/// its last partner taken off (a fixed point; exact once the shifts stand still), unless the point still lies
+/// above that partner's tangent plane within 0.1 mm of it. Normals within 60 degrees.
 ///   points   the scan point of each pair
 void pair_surface(const CadModel& cad, const ScanModel& scan, const std::vector<std::size_t>& points,
                   const RigidMotion& scan_from_cad, const SurfaceBasis& basis,

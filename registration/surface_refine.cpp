@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "acquisition/geometry/parallel_for.hpp"
 #include "acquisition/types/error.hpp"
@@ -21,6 +22,7 @@ constexpr double kClaimsNearMm = 150.0;  // strays that hold one place of an edg
 constexpr double kFineCellRatio = 0.4,
                  kCellRatio = 0.6;  // of the node spacing: to place nodes; of the priors
 constexpr std::size_t kMostNodes = 400;
+constexpr std::size_t kFewestPointsANode = 8, kLevelFactor = 4;  // of the first rounds of a dense scan
 constexpr double kGaugeMm = 50.0;       // weak pull to the rigid start, for motions that nothing else holds
 constexpr double kProximalMm = 5.0;     // a round's moves along such motions stay small
 constexpr double kLeastSigmaMm = 0.02;  // the drawing's own facets
@@ -28,6 +30,14 @@ constexpr double kSettledMm = 1e-3, kSettledEdgeLimits = 0.01;  // moves of a ro
 constexpr double kUnfollowedMm = 0.008;  // height of a bent surface that nodes 30 mm apart do not follow
 constexpr double kUnknownThicknessWiden = 2.0;  // the mid-surface's strain is then not known
 constexpr std::size_t kParts = 2;               // chunks of a list: each needs a system of its own
+
+/// A number that looks random: splitmix64 (Steele, Lea, Flood, OOPSLA 2014).
+std::uint64_t hash_of(std::uint64_t number) {
+  std::uint64_t hash = number + 0x9e3779b97f4a7c15;
+  hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9;
+  hash = (hash ^ (hash >> 27)) * 0x94d049bb133111eb;
+  return hash ^ (hash >> 31);
+}
 
 double area_mm2_of(const std::vector<SurfaceCell>& cells) {
   double area_mm2 = 0.0;
@@ -45,14 +55,11 @@ class SurfaceFitter {
     for (const Curve& curve : options.role == ContourRole::kEdge ? cad.contours : cad.others)
       edges_.push_back(&curve);
     make_basis();
-    const double strip_mm = std::clamp(4.0 * scan.spacing_mm, 3.0, options.strip_mm);
-    strips_.emplace(edges_, *fit_.basis, strip_mm, scan.spacing_mm);
-    strip_reach_mm_ = strip_mm + options.start_scale_mm;
     for (const Curve& curve : cad.contours) followed_.push_back(contour_stations(curve, *fit_.basis, 5.0));
     fit_.shift_mm.assign(fit_.basis->size(), Eigen::Vector3d::Zero());
     fit_.offset_mm.assign(edges_.size(), 0.0);
     const double reach_mm = options.band_mm + options.start_scale_mm + 3.0 * scan.spacing_mm;
-    points_ =
+    near_ =
         points_near(cad, scan, rigid, options.role == ContourRole::kCut ? -1.0 : reach_mm, options.threads);
   }
 
@@ -63,14 +70,42 @@ class SurfaceFitter {
     }
     scale_mm_ = options_.start_scale_mm;
     tau_mm_ = std::max(kStartTauMm, 0.5 * scan_.spacing_mm);
-    for (int pass = 0; pass < kStrayPasses; ++pass) {
+    for (std::size_t one_of : levels()) {
+      take_points(one_of);
       settle();
-      if (!fit_.usable() || !call_strays()) break;
+      if (!fit_.usable()) return std::move(fit_);
+    }
+    for (int pass = 1; pass < kStrayPasses && call_strays(); ++pass) {
+      settle();
+      if (!fit_.usable()) break;
     }
     return std::move(fit_);
   }
 
  private:
+  /// A dense scan is fitted by few of its points first: one of 16, of 4, of 1, as long as the nodes see
+  /// enough.
+  [[nodiscard]] std::vector<std::size_t> levels() const {
+    const std::size_t fewest = kFewestPointsANode * fit_.basis->size();
+    std::vector<std::size_t> one_of = {1};
+    while (near_.size() / (kLevelFactor * one_of.front()) >= fewest)
+      one_of.insert(one_of.begin(), kLevelFactor * one_of.front());
+    return one_of;
+  }
+
+  /// From now on one of so many points takes part, chosen by their number: rows of a profiler are not cut
+  /// out.
+  void take_points(std::size_t one_of) {
+    points_.clear();
+    pairs_.clear();
+    for (const std::size_t i : near_)
+      if (one_of == 1 || hash_of(i) % one_of == 0) points_.push_back(i);
+    const double spacing_mm = scan_.spacing_mm * std::sqrt(static_cast<double>(one_of));
+    const double strip_mm = std::clamp(4.0 * spacing_mm, 3.0, options_.strip_mm);
+    strips_.emplace(edges_, *fit_.basis, strip_mm, spacing_mm);
+    strip_reach_mm_ = strip_mm + options_.start_scale_mm;
+  }
+
   /// Rounds until the field stands still at the finest scales. The edge sharpens only as the field follows:
   /// else it is held where the first rounds found it.
   void settle() {
@@ -241,7 +276,7 @@ class SurfaceFitter {
   std::vector<const Curve*> edges_;
   std::optional<EdgeStrips> strips_;
   std::vector<std::vector<ContourStation>> followed_;
-  std::vector<std::size_t> points_;
+  std::vector<std::size_t> near_, points_;  // scan points near the contours, and those that take part
   std::vector<SurfacePair> pairs_;
   double scale_mm_ = 10.0, tau_mm_ = kStartTauMm, strip_reach_mm_ = 20.0;
 };

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "acquisition/types/error.hpp"
 #include "registration/surface_field.hpp"
 #include "tests/registration/scenes.hpp"
@@ -109,6 +111,25 @@ TEST(SurfaceField, MovingTheScanMovesTheAnswerAndNothingElse) {
   for (double s_mm = 0.0; s_mm < cad.contours[0].length_mm(); s_mm += 20.0) {
     const Eigen::Vector3d p = cad.contours[0].point_mm(s_mm);
     EXPECT_LT((motion.inverse() * moved.map(p).p_scan_mm - plain.map(p).p_scan_mm).norm(), 1e-6);
+  }
+}
+
+TEST(SurfaceField, TheOrderOfTheScanPointsDoesNotMatterThoughADenseScanBeginsWithFewOfThem) {
+  const PlatePart part(bent(2e-4));
+  const CadModel cad = scenes::cad_of(part);
+  const Trial trial = scenes::ideal_trial(part, {.points = 20000}, 9);
+  const SurfaceField plain = fitted(cad, trial, options_for(part), RigidMotion::Identity());
+  ASSERT_EQ(plain.fit().stop, "converged");
+  EXPECT_GT(plain.fit().pairs, 15000U);  // the last rounds use all of them
+  Trial shuffled = scenes::ideal_trial(part, {.points = 20000}, 9);
+  std::vector<Eigen::Vector3d>&points = shuffled.scan.points_mm, &normals = shuffled.scan.normals;
+  std::reverse(points.begin(), points.end());
+  std::reverse(normals.begin(), normals.end());
+  shuffled.scan.tree = NearestPoints(points);
+  const SurfaceField other = fitted(cad, shuffled, options_for(part), RigidMotion::Identity());
+  for (double s_mm = 0.0; s_mm < cad.contours[0].length_mm(); s_mm += 20.0) {
+    const Eigen::Vector3d p = cad.contours[0].point_mm(s_mm);
+    EXPECT_LT((other.map(p).p_scan_mm - plain.map(p).p_scan_mm).norm(), 5e-4);
   }
 }
 
