@@ -72,7 +72,7 @@ synthetic::SyntheticScan fe_scan(const std::string& part, const synthetic::ScanO
 
 synthetic::ScanOptions usual_options(const std::string& part) {
   synthetic::ScanOptions options;
-  options.points = part == "porthole" ? 6000 : part == "nosecone" ? 10000 : 3000;
+  if (part == "porthole") options.points = 6000;
   return options;
 }
 
@@ -117,16 +117,17 @@ Table read_table(const fs::path& file) {
 
 PathError error_to(const Table& path, const std::vector<synthetic::EdgePoint>& truth) {
   PathError error;
-  const std::size_t count = truth.size();
+  const std::vector<synthetic::EdgeRange> contours = synthetic::contour_ranges(truth);
   for (std::size_t row = 0; row < path.rows.size(); ++row) {
     const Vector3d tip_mm = path.tip_mm(row);
     std::size_t nearest = 0;
     double distance_mm = 1e300;
-    for (std::size_t k = 0; k < count; ++k) {
-      const double d_mm = distance_to_segment_mm(tip_mm, truth[k].true_mm, truth[(k + 1) % count].true_mm);
-      if (d_mm < distance_mm) nearest = k;
-      distance_mm = std::min(distance_mm, d_mm);
-    }
+    for (const synthetic::EdgeRange& contour : contours)
+      for (std::size_t k = contour.begin; k < contour.end; ++k) {
+        const double d_mm = distance_to_segment_mm(tip_mm, truth[k].true_mm, truth[contour.next(k)].true_mm);
+        if (d_mm < distance_mm) nearest = k;
+        distance_mm = std::min(distance_mm, d_mm);
+      }
     const double cosine = path.axis(row).normalized().dot(truth[nearest].true_normal);
     error.mean_mm += distance_mm;
     error.max_mm = std::max(error.max_mm, distance_mm);

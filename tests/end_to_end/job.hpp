@@ -39,7 +39,7 @@ class Job {
 [[nodiscard]] synthetic::SyntheticScan fe_scan(const std::string& part, const synthetic::ScanOptions& options,
                                                std::uint64_t seed);
 
-/// The number of points that goes with a finite-element part, and a little noise.
+/// As a finite-element part is usually scanned; the porthole with more points than the paper's 1,500.
 [[nodiscard]] synthetic::ScanOptions usual_options(const std::string& part);
 
 /// The same points and normals as ASCII PLY in double, at p + shift; rounded to 1/1024 mm before the shift,
@@ -56,7 +56,7 @@ struct Table {
 };
 [[nodiscard]] Table read_table(const std::filesystem::path& file);
 
-/// How far a path is from a closed curve with normals.
+/// How far a path is from closed curves with normals.
 struct PathError {
   double mean_mm = 0.0, max_mm = 0.0;
   double axis_mean_deg = 0.0;

@@ -20,7 +20,7 @@ Points tips(const ToolPath& path) {
 /// The nominal face in the band: what a peer that knows no triangles registers.
 Points surface_points(const synthetic::Part& part, const Truth& truth) {
   const double spacing_mm =
-      std::sqrt(part.band_area_mm2(0, part.band_mm()) / static_cast<double>(part.scan_points()));
+      std::sqrt(part.band_area_mm2(part.band_mm()) / static_cast<double>(part.scan_points()));
   Points points;
   for (const synthetic::AreaSample& sample : part.area_samples(spacing_mm))
     if (truth.near_nominal(sample.nominal_mm, part.band_mm())) points.push_back(sample.nominal_mm);
@@ -42,6 +42,15 @@ BenchPart::BenchPart(const std::filesystem::path& folder, int thread_count)
       path_mm(tips(drawing.path)),
       surface_mm(surface_points(fe, truth)),
       threads(thread_count) {}
+
+std::vector<Eigen::Vector3d> contour_points(const CadModel& cad, double step_mm) {
+  Points points;
+  for (const Curve& curve : cad.contours) {
+    const Points one = resample(curve.contour(), step_mm).points_mm;
+    points.insert(points.end(), one.begin(), one.end());
+  }
+  return points;
+}
 
 PreparedScan prepare(const BenchPart& part, const PointCloud& cloud) {
   Scan scan;

@@ -27,6 +27,9 @@ struct BenchPart {
   int threads = 0;
 };
 
+/// Points of all accepted contours, at most step_mm apart.
+[[nodiscard]] std::vector<Eigen::Vector3d> contour_points(const CadModel& cad, double step_mm);
+
 /// The stages of `arris run`, from points in memory to the corrected path.
 [[nodiscard]] PreparedScan prepare(const BenchPart& part, const PointCloud& cloud);
 [[nodiscard]] Correction correct_path(const BenchPart& part, const Registration& registration);

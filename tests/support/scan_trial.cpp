@@ -28,7 +28,7 @@ RegistrationOptions ScanTrial::options() const {
 
 RigidMotion ScanTrial::paper_rigid() const {
   const std::vector<Eigen::Vector3d> contour =
-      resample(part_.cad.contours[0].contour(), std::max(kLeastStepMm, model().spacing_mm)).points_mm;
+      contour_points(part_.cad, std::max(kLeastStepMm, model().spacing_mm));
   const NearestPoints tree(model().edge_mm);
   return icp_point_to_point(contour, tree, model().edge_mm, rigid_.coarse.scan_from_cad, options().rigid)
       .scan_from_cad;

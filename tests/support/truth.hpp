@@ -26,38 +26,42 @@ struct RowError {
   Eigen::Vector3d foot_mm = Eigen::Vector3d::Zero();
 };
 
-/// The true edge of one part, CAD frame: what the fixture's elements say, no code of the rooms.
+/// The true edge of one part, all contours that the tool follows, CAD frame: what the fixture's elements say,
+/// no code of the rooms.
 class Truth {
  public:
   explicit Truth(const synthetic::Part& part);
 
-  /// Row i of the nominal path and where it was carried, both in the CAD frame (the scan's true pose undone).
+  /// Row i of the nominal path and where it was carried, both in the CAD frame (the scan's true pose undone);
+  /// each against the contour that its nominal place is nearest to.
   [[nodiscard]] PathError error(std::span<const Eigen::Vector3d> nominal_mm,
                                 std::span<const Eigen::Vector3d> carried_mm) const;
-  /// Each carried row against the true edge (deformed), or against the drawing's (not deformed).
+  /// Each carried row against the nearest true edge (deformed), or the drawing's (not deformed).
   [[nodiscard]] std::vector<RowError> rows(std::span<const Eigen::Vector3d> carried_mm, bool deformed) const;
   /// Whether a point of the drawing lies within reach_mm of the nominal edge.
-  [[nodiscard]] bool near_nominal(const Eigen::Vector3d& p_cad_mm, double reach_mm) const {
-    return nominal_.nearest(p_cad_mm, reach_mm).has_value();
-  }
+  [[nodiscard]] bool near_nominal(const Eigen::Vector3d& p_cad_mm, double reach_mm) const;
   [[nodiscard]] const std::vector<synthetic::EdgePoint>& edge() const { return edge_; }
-  /// A circle may turn about its axis unseen: there "along" says nothing.
+  /// A circle alone may turn about its axis unseen: there "along" says nothing.
   [[nodiscard]] bool is_circle() const { return is_circle_; }
 
  private:
+  struct Loop {
+    synthetic::EdgeRange range;  ///< of edge_
+    synthetic::PointGrid nominal, deformed;
+  };
   struct Foot {
+    std::size_t loop = 0;
     std::size_t chord = 0;  ///< from sample `chord` to the next
     double ratio = 0.0;
     Eigen::Vector3d offset_mm = Eigen::Vector3d::Zero();  ///< query less foot
   };
-  [[nodiscard]] Foot nearest(const synthetic::PointGrid& grid, bool deformed,
-                             const Eigen::Vector3d& p_mm) const;
+  [[nodiscard]] Foot nearest(bool deformed, const Eigen::Vector3d& p_mm) const;
+  [[nodiscard]] Foot nearest(std::size_t loop, bool deformed, const Eigen::Vector3d& p_mm) const;
   [[nodiscard]] double arc_mm(const Foot& foot) const;
-  [[nodiscard]] std::size_t next(std::size_t i) const { return i + 1 == edge_.size() ? 0 : i + 1; }
+  [[nodiscard]] RowError row(const Foot& foot, bool deformed, const Eigen::Vector3d& p_mm) const;
 
   std::vector<synthetic::EdgePoint> edge_;
-  synthetic::PointGrid nominal_, true_;
-  double length_mm_ = 0.0;
+  std::vector<Loop> loops_;
   bool is_circle_ = false;
 };
 

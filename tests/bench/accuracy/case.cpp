@@ -67,9 +67,18 @@ class Comparison {
     outcome_.error[method] =
         error_of(carried(part_.path_mm, [&](const Eigen::Vector3d& p) { return local_from_cad * p; }));
   }
-  void put_motion(Method method, const ContourMotion& motion) {
+  /// By the motion of the nearest place on the nearest contour.
+  void put_motions(Method method, const std::vector<ContourMotion>& motions) {
     outcome_.error[method] = error_of(carried(part_.path_mm, [&](const Eigen::Vector3d& p) {
-      return motion.at(part_.cad.contours[0].nearest(p).arc_mm) * p;
+      std::size_t contour = 0;
+      CurveFoot foot = part_.cad.contours[0].nearest(p);
+      for (std::size_t k = 1; k < motions.size(); ++k) {
+        const CurveFoot other = part_.cad.contours[k].nearest(p);
+        if (other.distance_mm >= foot.distance_mm) continue;
+        foot = other;
+        contour = k;
+      }
+      return motions[contour].at(foot.arc_mm) * p;
     }));
   }
 
@@ -87,8 +96,7 @@ class Comparison {
     const ScanModel& model = scan_->model;
     const RigidMotion& start = registration_.coarse.scan_from_cad;
     const RegistrationOptions options = registration_options(part_.recipe, part_.threads);
-    const Points contour =
-        resample(part_.cad.contours[0].contour(), std::max(0.5, model.spacing_mm)).points_mm;
+    const Points contour = contour_points(part_.cad, std::max(0.5, model.spacing_mm));
     const NearestPoints tree(model.edge_mm);
     to_point_ = icp_point_to_point(contour, tree, model.edge_mm, start, options.rigid).scan_from_cad;
     put_rigid(kOursToPoint, to_point_);
@@ -125,11 +133,10 @@ class Comparison {
     SubdivisionIcpOptions paper = ours;
     paper.match = SegmentMatch::kPaper;
     paper.stability = StabilityPoints::kPaper;
-    put_motion(kPaper, subdivision_icp(part_.cad, model, raw, to_point_, paper).front());
+    put_motions(kPaper, subdivision_icp(part_.cad, model, raw, to_point_, paper));
     paper.stability = StabilityPoints::kNone;
-    put_motion(kPaperNoSupport, subdivision_icp(part_.cad, model, raw, to_point_, paper).front());
-    put_motion(kPlain,
-               subdivision_icp(part_.cad, model, raw, registration_.rigid.scan_from_cad, ours).front());
+    put_motions(kPaperNoSupport, subdivision_icp(part_.cad, model, raw, to_point_, paper));
+    put_motions(kPlain, subdivision_icp(part_.cad, model, raw, registration_.rigid.scan_from_cad, ours));
     RegistrationOptions supported = registration_options(part_.recipe, part_.threads);
     supported.method = RegistrationMethod::kSubdivision;
     put_chain(kSupported, supported);

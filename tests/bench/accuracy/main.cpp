@@ -48,11 +48,11 @@ CaseResult run_case(const BenchPart& part, const BenchCase& bench_case, int seed
 
 std::string document(const std::vector<CaseResult>& results, const std::vector<PartTimes>& times,
                      const Arguments& arguments) {
-  std::string text = "### Goals\n\n" + target_table(results) + "\n### Times\n\n" +
-                     times_table(times, arguments.rounds, arguments.threads) + "\n### The whole method\n\n" +
-                     overview_table(results) + "\n### The rigid ICPs\n\n" +
-                     "Mean / max error in mm, mean of the seeds.\n\n" + rigid_table(results) +
-                     "\n### Every method\n\n";
+  std::string text =
+      "### Goals\n\n" + target_table(results) + "\n### Against what a scan can show\n\n" +
+      limit_table(results) + "\n### Times\n\n" + times_table(times, arguments.rounds, arguments.threads) +
+      "\n### The whole method\n\n" + overview_table(results) + "\n### The rigid ICPs\n\n" +
+      "Mean / max error in mm, mean of the seeds.\n\n" + rigid_table(results) + "\n### Every method\n\n";
   for (const CaseResult& result : results) text += case_table(result) + "\n";
   return text;
 }
@@ -60,7 +60,7 @@ std::string document(const std::vector<CaseResult>& results, const std::vector<P
 void run(const Arguments& arguments) {
   std::vector<CaseResult> results;
   std::vector<PartTimes> times;
-  for (const std::string name : {"porthole", "nosecone", "sheet"}) {
+  for (const std::string name : {"porthole", "nosecone", "sheet", "bracket", "duct"}) {
     if (!arguments.part.empty() && arguments.part != name) continue;
     const BenchPart part(arguments.fixtures / name, arguments.threads);
     for (const BenchCase& bench_case : bench_cases()) {

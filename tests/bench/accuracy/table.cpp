@@ -92,6 +92,20 @@ const CaseResult* usual(const std::vector<CaseResult>& results, const std::strin
   return nullptr;
 }
 
+/// Goals for the mean and the peak error over E: the usual scan, and twice that for any other.
+struct LimitGoal {
+  double mean_ratio, max_ratio;
+};
+LimitGoal limit_goal(const CaseResult& result, bool is_usual) {
+  const bool is_small = result.part == "bracket" || result.part == "duct";
+  const double share = is_usual ? 1.0 : 2.0;
+  return {share * (is_small ? 0.35 : 0.2), share * (is_small ? 1.5 : 0.6)};
+}
+
+std::string ratio_cell(double ratio, double goal, bool refused) {
+  return fmt::format("{:.2f} of {:.2f}: {}", ratio, goal, ratio <= goal && !refused ? "met" : "**missed**");
+}
+
 std::string goal_row(const std::string& what, const std::string& paper, const std::string& goal,
                      const std::string& reached, bool met) {
   return fmt::format("| {} | {} | {} | {} | {} |\n", what, paper, goal, reached, met ? "met" : "**missed**");
@@ -177,6 +191,25 @@ std::string rigid_table(const std::vector<CaseResult>& results) {
       text += fmt::format(" {:.2f} / {:.2f}, best {} times |", s.mean_mm, s.max_mm, wins);
     }
     text += "\n";
+  }
+  return text;
+}
+
+std::string limit_table(const std::vector<CaseResult>& results) {
+  std::string text = "| part | scan | E | mean / E | max / E | refused |\n|---|---|---|---|---|---|\n";
+  for (const CaseResult& r : results) {
+    const Summary s = summary(r, kWhole);
+    const double limit_mm = mean_of(r, &Outcome::edge_limit_mm);
+    const LimitGoal goal = limit_goal(r, &r == usual(results, r.part));
+    const std::size_t refused = refusals(r);
+    if (s.count == 0) {
+      text += fmt::format("| {} | {} | {:.3f} | - | - | all |\n", r.part, r.scan, limit_mm);
+      continue;
+    }
+    text +=
+        fmt::format("| {} | {} | {:.3f} | {} | {} | {} of {} |\n", r.part, r.scan, limit_mm,
+                    ratio_cell(s.mean_mm / limit_mm, goal.mean_ratio, refused > 0),
+                    ratio_cell(s.max_mm / limit_mm, goal.max_ratio, refused > 0), refused, r.seeds.size());
   }
   return text;
 }

@@ -35,5 +35,8 @@ struct Summary {
 [[nodiscard]] std::string rigid_table(const std::vector<CaseResult>& results);
 /// The stated goals beside what the usual scans reached.
 [[nodiscard]] std::string target_table(const std::vector<CaseResult>& results);
+/// The whole method against what a scan can show: mean and peak error over E, and the goals; a refused seed
+/// misses.
+[[nodiscard]] std::string limit_table(const std::vector<CaseResult>& results);
 
 }  // namespace arris::bench

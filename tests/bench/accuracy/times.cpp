@@ -127,8 +127,7 @@ class Clock {
 
   void peers() {
     const ScanModel& model = scan_->model;
-    const std::vector<Eigen::Vector3d> contour =
-        resample(part_.cad.contours[0].contour(), std::max(0.5, model.spacing_mm)).points_mm;
+    const std::vector<Eigen::Vector3d> contour = contour_points(part_.cad, std::max(0.5, model.spacing_mm));
     const auto peer = [&](const std::string& name, const std::function<void()>& work) {
       record(result_.peers, name, run_timed(work));
     };

@@ -30,7 +30,7 @@ Rung climb(const BenchPart& part, double spacing_mm, int seeds) {
   Rung rung{spacing_mm, spacing_mm * spacing_mm / 50.0, 0, {}};
   synthetic::ScanOptions scan;
   rung.points = scan.points =
-      std::llround(part.fe.band_area_mm2(0, part.fe.band_mm()) / (spacing_mm * spacing_mm));
+      std::llround(part.fe.band_area_mm2(part.fe.band_mm()) / (spacing_mm * spacing_mm));
   rung.tallies = compare(part, scan, methods(), seeds);
   return rung;
 }
