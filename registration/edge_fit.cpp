@@ -79,6 +79,8 @@ class EdgeFitter {
       fit_across();
     }
     find_row_gaps();
+    fit_.across.array() += options_.scanner.out_mm;  // the spline's weights sum to one
+    fit_.scanner_sd_mm = options_.scanner.sd_mm;
     return std::move(fit_);
   }
 
@@ -331,7 +333,8 @@ double EdgeFit::edge_limit_mm() const {
 double EdgeFit::sd_across_mm(double arc_mm, bool closed) const {
   const double gap_mm = unseen_bend_mm(to_seen_mm(arc_mm, closed));
   const double limit_mm = std::max(edge_limit_mm(), row_gap_at_mm(arc_mm) / std::sqrt(12.0));
-  return std::sqrt(variance_at(spline.at(arc_mm), across_covariance) + limit_mm * limit_mm + gap_mm * gap_mm);
+  return std::sqrt(variance_at(spline.at(arc_mm), across_covariance) + limit_mm * limit_mm + gap_mm * gap_mm +
+                   scanner_sd_mm * scanner_sd_mm);
 }
 
 double EdgeFit::sd_height_mm(double arc_mm, bool closed) const {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "registration/arc_spline.hpp"
+#include "registration/scanner_edge.hpp"
 #include "registration/scene.hpp"
 #include "registration/subdivision_icp.hpp"
 
@@ -19,6 +20,7 @@ struct EdgeFitOptions {
   double tilt_change_rad = 0.01;     ///< expected change of tilt from knot to knot
   double height_reach_mm = 3.0;  ///< farther from the carried surface (and three spacings) no point is of it
   double gate_floor_mm = 0.0;    ///< points this near to the fitted height take part, however low the noise
+  ScannerEdge scanner;           ///< taken off what the scan shows
   int threads = 0;
 };
 
@@ -38,6 +40,7 @@ struct EdgeFit {
   double density_per_mm2 = 0.0;    ///< median over the seen bins
   double residual_sigma_mm = 0.0;  ///< robust residual of the height fit
   std::size_t points = 0;          ///< inliers of the height fit
+  double scanner_sd_mm = 0.0;      ///< of the scanner's edge, alike all along the contour
 
   /// Nothing found yet: zero on this spline.
   explicit EdgeFit(const ArcSpline& along);
@@ -46,8 +49,8 @@ struct EdgeFit {
   /// Arc length to the nearest place where the edge was seen; 0 where it was.
   [[nodiscard]] double to_seen_mm(double arc_mm, bool closed) const;
   /// Standard deviations at s: of the fit, the edge limit 1 / (density * 50 mm) that no scan of this density
-  /// goes below across the contour (or that of an edge anywhere between two rows), and what a part may bend
-  /// unseen inside a gap.
+  /// goes below across the contour (or that of an edge anywhere between two rows), the scanner's edge, and
+  /// what a part may bend unseen inside a gap.
   [[nodiscard]] double sd_across_mm(double arc_mm, bool closed) const;
   [[nodiscard]] double sd_height_mm(double arc_mm, bool closed) const;
   [[nodiscard]] double sd_tilt_rad(double arc_mm) const;

@@ -20,8 +20,8 @@ constexpr std::size_t kChunk = 256;
 }  // namespace
 
 EdgeStrips::EdgeStrips(const std::vector<const Curve*>& edges, const SurfaceBasis& basis, double strip_mm,
-                       double spacing_mm)
-    : strip_mm_(strip_mm), spacing_mm_(spacing_mm) {
+                       double spacing_mm, double out_mm)
+    : strip_mm_(strip_mm), spacing_mm_(spacing_mm), out_mm_(out_mm) {
   for (const Curve* curve : edges) {
     Edge edge;
     edge.curve = curve;
@@ -91,6 +91,11 @@ bool EdgeStrips::counts(std::size_t i) const {
   return p.weight > 0.0 && edges_[p.edge].bins.seen_at(p.foot.arc_mm);
 }
 
+/// Of the edge as the scanner shows it.
+double EdgeStrips::inside_mm(const Point& point, const std::vector<double>& offset_mm) const {
+  return point.foot.across_mm - offset_mm[point.edge] + out_mm_;
+}
+
 void EdgeStrips::add(std::size_t begin, std::size_t end, const std::vector<double>& offset_mm, double tau_mm,
                      double stray_ratio, SurfaceSystem& system) const {
   const EdgeSupport support{tau_mm, strip_mm_, stray_ratio};
@@ -98,9 +103,9 @@ void EdgeStrips::add(std::size_t begin, std::size_t end, const std::vector<doubl
   for (std::size_t i = begin; i < end; ++i) {
     const Point& p = points_[i];
     if (!counts(i)) continue;
-    const double inside_mm = p.foot.across_mm - offset_mm[p.edge];
+    const double inside = inside_mm(p, offset_mm);
     if (stray_[i]) continue;
-    const EdgeSupport::Pull pull = support.at(inside_mm);
+    const EdgeSupport::Pull pull = support.at(inside);
     if (pull.slope_per_mm == 0.0 && pull.curvature_per_mm2 == 0.0) continue;
     set_row(p, row);
     system.add(row, p.weight * pull.slope_per_mm, p.weight * pull.curvature_per_mm2);
@@ -120,9 +125,9 @@ double EdgeStrips::resistance(const SurfaceSystem& system, const Eigen::VectorXd
       continue;
     set_row(p, row);
     const double by_mm = system.dot(row, move);
-    const double inside_mm = p.foot.across_mm - offset_mm[p.edge];
-    const EdgeSupport::Pull pull = support.at(inside_mm);
-    sum += p.weight * (support.whole_cost(inside_mm + by_mm) - support.whole_cost(inside_mm) -
+    const double inside = inside_mm(p, offset_mm);
+    const EdgeSupport::Pull pull = support.at(inside);
+    sum += p.weight * (support.whole_cost(inside + by_mm) - support.whole_cost(inside) -
                        pull.slope_per_mm * by_mm - 0.5 * pull.curvature_per_mm2 * by_mm * by_mm);
   }
   return sum;
@@ -170,15 +175,15 @@ std::vector<EdgeClaim> EdgeStrips::claims(const std::vector<double>& offset_mm, 
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Point& p = points_[i];
     if (!counts(i) || stray_[i]) continue;
-    const double inside_mm = p.foot.across_mm - offset_mm[p.edge];
-    const EdgeSupport::Pull pull = support.at(inside_mm);
-    if (std::abs(inside_mm) > kClaimTaus * tau_mm || pull.slope_per_mm >= 0.0) continue;
+    const double inside = inside_mm(p, offset_mm);
+    const EdgeSupport::Pull pull = support.at(inside);
+    if (std::abs(inside) > kClaimTaus * tau_mm || pull.slope_per_mm >= 0.0) continue;
     EdgeClaim claim;
     claim.pair = i;
     claim.arc_mm = p.foot.arc_mm;
     claim.slope = p.weight * pull.slope_per_mm;
     claim.curvature = p.weight * pull.curvature_per_mm2;
-    claim.saved = p.weight * (support.cost(inside_mm) + std::log(stray_ratio));
+    claim.saved = p.weight * (support.cost(inside) + std::log(stray_ratio));
     set_row(p, claim.row);
     found.push_back(std::move(claim));
   }

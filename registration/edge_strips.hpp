@@ -15,9 +15,9 @@ namespace arris {
 /// inside, where the edge was seen, and what that says about the field (EdgeSupport).
 class EdgeStrips {
  public:
-  /// edges must outlive this; spacing_mm is the scan's.
+  /// edges must outlive this; spacing_mm is the scan's, and it shows edges out_mm out in the void.
   EdgeStrips(const std::vector<const Curve*>& edges, const SurfaceBasis& basis, double strip_mm,
-             double spacing_mm);
+             double spacing_mm, double out_mm);
 
   /// Renews the strips: pairs within reach_mm of an edge carried by shift_mm, and within gate_mm of the
   /// surface.
@@ -71,10 +71,11 @@ class EdgeStrips {
   [[nodiscard]] double void_mm2(double from_mm, double to_mm) const;
   [[nodiscard]] std::size_t points_in_void(double from_mm, double to_mm, double height_mm) const;
   [[nodiscard]] bool counts(std::size_t point) const;
+  [[nodiscard]] double inside_mm(const Point& point, const std::vector<double>& offset_mm) const;
   void set_row(const Point& point, SurfaceSystem::Row& row) const;
 
   std::vector<Edge> edges_;
-  double strip_mm_, spacing_mm_;
+  double strip_mm_, spacing_mm_, out_mm_;
   double reach_mm_ = 0.0, gate_mm_ = 0.0;  // of the last update
   std::vector<Point> points_;
   std::vector<char> stray_;  // one a pair

@@ -48,6 +48,7 @@ MappedPoint SurfaceField::map(const Eigen::Vector3d& p_cad_mm) const {
   const Eigen::Vector3d tangent = inward.cross(row.normal).normalized();
   mapped.sd_mm = {sd_along_mm(row, shape.normal, -1), sd_along_mm(row, turn * inward, follow ? contour : -1),
                   sd_along_mm(row, turn * tangent, -1)};
+  if (follow) mapped.sd_mm.y() = std::hypot(mapped.sd_mm.y(), fit_.scanner_sd_mm);
   mapped.sd_axis_rad = sd_tilt_rad(row, turn * inward, shape.normal);
   mapped.from_data = seen_.empty() || seen_[static_cast<std::size_t>(contour)].at(beside.arc_mm);
   mapped.in_domain = true;

@@ -51,6 +51,7 @@ class SurfaceFitter {
                 const SurfaceOptions& options)
       : cad_(cad), scan_(scan), options_(options), prior_(options.prior) {
     fit_.scan_from_cad = rigid;
+    fit_.scanner_sd_mm = options.scanner.sd_mm;
     if (prior_.thickness_mm <= 0.0) prior_.strain_ratio *= kUnknownThicknessWiden;
     for (const Curve& curve : options.role == ContourRole::kEdge ? cad.contours : cad.others)
       edges_.push_back(&curve);
@@ -102,7 +103,7 @@ class SurfaceFitter {
       if (one_of == 1 || hash_of(i) % one_of == 0) points_.push_back(i);
     const double spacing_mm = scan_.spacing_mm * std::sqrt(static_cast<double>(one_of));
     const double strip_mm = std::clamp(4.0 * spacing_mm, 3.0, options_.strip_mm);
-    strips_.emplace(edges_, *fit_.basis, strip_mm, spacing_mm);
+    strips_.emplace(edges_, *fit_.basis, strip_mm, spacing_mm, options_.scanner.out_mm);
     strip_reach_mm_ = strip_mm + options_.start_scale_mm;
   }
 

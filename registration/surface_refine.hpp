@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "acquisition/types/frames.hpp"
+#include "registration/scanner_edge.hpp"
 #include "registration/scene.hpp"
 #include "registration/surface_basis.hpp"
 #include "registration/surface_shape.hpp"
@@ -26,6 +27,7 @@ struct SurfaceOptions {
   double edge_share_ratio = 0.33;  ///< an edge is known up to a smooth shift over this share of its length
   double strip_mm = 10.0;          ///< widest strip of material whose density the edge is judged by
   double offset_sd_mm = 0.5;       ///< how much larger or smaller than drawn a contour may be, all round
+  ScannerEdge scanner;             ///< taken off what the scan shows of an edge
   ContourRole role = ContourRole::kEdge;
   double stock_mm = 0.0;         ///< role cut: material that the contour still carries
   double start_scale_mm = 10.0;  ///< robust scale at the start: about what the rigid motion leaves
@@ -41,6 +43,7 @@ struct SurfaceFit {
   std::vector<Eigen::Vector3d> shift_mm;  ///< one a node, CAD frame
   std::vector<double> offset_mm;          ///< one an edge used: it lies this far inside the material
   Eigen::MatrixXd covariance;             ///< of the node shifts (3 each), then the offsets; mm^2
+  double scanner_sd_mm = 0.0;             ///< of the scanner's edge; not in the covariance
   double sigma_mm = 0.0;                  ///< robust residual normal to the surface
   std::size_t pairs = 0;
   int rounds = 0;

@@ -19,7 +19,7 @@ struct Strip {
   CadModel cad = scenes::cad_of(part);
   SurfaceBasis basis{place_nodes({&cad.contours[0]}, band_cells(cad, 40.0, 12.0), 30.0), 30.0};
   std::vector<Eigen::Vector3d> still = std::vector<Eigen::Vector3d>(basis.size(), Eigen::Vector3d::Zero());
-  EdgeStrips strips{{&cad.contours[0]}, basis, kStripMm, kSpacingMm};
+  EdgeStrips strips{{&cad.contours[0]}, basis, kStripMm, kSpacingMm, 0.0};
 
   Strip(double stray_ratio, std::uint64_t seed) {
     synthetic::Random random(seed);
