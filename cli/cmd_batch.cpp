@@ -12,6 +12,7 @@
 #include "cli/commands.hpp"
 #include "cli/console.hpp"
 #include "cli/drawing.hpp"
+#include "cli/edge_file.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/run_inputs.hpp"
 #include "cli/version.hpp"
@@ -59,6 +60,7 @@ Shared read_shared(const RunArgs& run) {
                                 .found = "contour.validation = \"operator\"",
                                 .needed = "\"auto\"",
                                 .next = "run these scans one by one: arris run --contours"});
+  if (!recipe.scan.edge_calibration.empty()) (void)read_edge_file(recipe.scan.edge_calibration);
   std::vector<InputFile> inputs = hashed_inputs_but_scan(run, recipe, read_cell_for(run, recipe));
   (void)read_drawing(recipe, !run.inspect_only, run.threads);
   return {recipe, std::move(inputs)};

@@ -1,10 +1,8 @@
 #include "cli/cmd_run.hpp"
 
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <thread>
@@ -16,7 +14,9 @@
 #include "cli/cell.hpp"
 #include "cli/console.hpp"
 #include "cli/contours_file.hpp"
+#include "cli/in_scan.hpp"
 #include "cli/pipeline.hpp"
+#include "cli/report_time.hpp"
 #include "cli/run_folder.hpp"
 #include "cli/run_inputs.hpp"
 #include "cli/run_summary.hpp"
@@ -32,23 +32,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kStages = 7;
 constexpr const char* kMark = "result.json";
-
-std::string utc(std::time_t time) {
-  std::tm parts{};
-  gmtime_r(&time, &parts);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text;
-}
-
-/// The date that results carry: SOURCE_DATE_EPOCH, else the scan file's time, so that equal runs give equal
-/// bytes.
-std::string report_time(const fs::path& scan) {
-  if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH"); epoch != nullptr && *epoch != '\0')
-    return utc(static_cast<std::time_t>(std::strtoll(epoch, nullptr, 10)));
-  struct stat status {};
-  return utc(::stat(scan.c_str(), &status) == 0 ? status.st_mtime : std::time_t{0});
-}
 
 /// Stage times and the run's log, with the progress line.
 class Journal {
@@ -124,20 +107,6 @@ std::optional<ContourChoice> operators_choice(const RunArgs& args, const Recipe&
   return std::nullopt;
 }
 
-/// Runs a step that works on the scan. The rooms below know no file names: an error of the input that does
-/// not say where it is lies in this file.
-template <class Step>
-auto in_scan(const fs::path& scan, const Step& step) {
-  try {
-    return step();
-  } catch (const Error& error) {
-    if (error.fault() != Fault::kInput || !error.text().where.empty()) throw;
-    ErrorText text = error.text();
-    text.where = scan.string();
-    throw Error(error.fault(), text);
-  }
-}
-
 fs::path default_out(const fs::path& scan) {
   return scan.stem().string() + ".arris";
 }
@@ -180,6 +149,9 @@ int run_main_job(const RunArgs& args) {
   record.inputs = inputs;
   if (cell) record.frame_max_residual_mm = cell->targets_max_residual_mm;
   record.report_time = report_time(args.scan);
+  for (std::string& note :
+       report::edge_offset_notes(record.edge_offset, record.spacing_mm, record.report_time))
+    record.notes.push_back(std::move(note));
   record.result_hash = sha256_hex(report::canonical_text(record, processed.field_parameters));
 
   journal.stage("writing the results");

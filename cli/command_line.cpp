@@ -123,6 +123,48 @@ void add_contours(CLI::App& app, const Common& common, Chosen& chosen) {
   });
 }
 
+void add_calibrate_edge(CLI::App& calibrate, const Common& common, Chosen& chosen) {
+  const auto args = std::make_shared<CalibrateEdgeArgs>();
+  CLI::App* command = add_command(
+      calibrate, "edge", "Where a scanner shows edges, from scans of a hole or plate of known size",
+      "arris calibrate edge gauge.toml --scan g1.ply g2.ply g3.ply --scanner \"Hall 2\" --out edge.toml\n"
+      "  arris calibrate edge gauge.toml --scan g4.ply --scanner \"Hall 2\" --size-sd 0.005 --out edge.toml "
+      "--force\n\nThen name it in the recipes of the parts: [scan] edge_calibration = \"edge.toml\"");
+  command->add_option("RECIPE", args->recipe, "recipe of the reference: its drawing, units and contours")
+      ->required()
+      ->option_text(" ");
+  command->add_option("--scan", args->scans, "scans of the reference, at least one; three are better")
+      ->required()
+      ->option_text("FILE ... (required)");
+  command->add_option("--scanner", args->scanner, "which scanner this is, as reports shall call it")
+      ->required()
+      ->option_text("NAME (required)");
+  command->add_option("--serial", args->serial, "its serial number")->option_text("NUMBER");
+  command
+      ->add_option(
+          "--size-sd", args->size_sd_mm,
+          "standard deviation of the reference's size, edge to edge of the material: 0.01 unless given")
+      ->check(CLI::Range(0.0, 10.0))
+      ->option_text("MM");
+  command->add_option("--out", args->out, "where the calibration is written")
+      ->required()
+      ->option_text("FILE (required)");
+  command->add_flag("--force", args->force, "replace a former calibration of that name");
+  command->callback([args, &common, &chosen] {
+    args->json = common.json;
+    args->threads = common.threads;
+    chosen = [args] { return run_calibrate_edge(*args); };
+  });
+}
+
+void add_calibrate(CLI::App& app, const Common& common, Chosen& chosen) {
+  CLI::App* command = add_command(
+      app, "calibrate", "Measure what is a property of the station",
+      "arris calibrate edge gauge.toml --scan g1.ply g2.ply --scanner \"Hall 2\" --out edge.toml");
+  command->require_subcommand(1);
+  add_calibrate_edge(*command, common, chosen);
+}
+
 void add_info(CLI::App& app, const Common& common, Chosen& chosen) {
   const auto args = std::make_shared<InfoArgs>();
   CLI::App* command = add_command(app, "info", "What a scan or mesh file holds", "arris info part7.ply");
@@ -278,6 +320,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_run(app, common, chosen, true);
   add_batch(app, common, chosen);
   add_contours(app, common, chosen);
+  add_calibrate(app, common, chosen);
   add_info(app, common, chosen);
   add_recipe(app, common, chosen);
   add_demo(app, common, chosen);

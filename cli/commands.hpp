@@ -20,6 +20,20 @@ struct ContoursArgs {
 };
 [[nodiscard]] int run_contours(const ContoursArgs& args);
 
+/// `arris calibrate edge RECIPE`: where a scanner shows edges, from scans of a reference of known size.
+struct CalibrateEdgeArgs {
+  std::filesystem::path recipe;  ///< of the reference
+  std::vector<std::filesystem::path> scans;
+  std::string scanner, serial;
+  double size_sd_mm = 0.01;   ///< how well the reference's size is known
+  std::filesystem::path out;  ///< where the calibration is written
+  bool force = false;         ///< a former calibration of that name is replaced
+  bool json = false;
+  int threads = 0;
+};
+/// Returns 0, or 5 when the scans support no calibration; then nothing is written.
+[[nodiscard]] int run_calibrate_edge(const CalibrateEdgeArgs& args);
+
 /// `arris info FILE`
 struct InfoArgs {
   std::filesystem::path file;

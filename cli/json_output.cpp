@@ -83,6 +83,31 @@ std::string keys_json(const std::string& file, const std::vector<Key>& keys,
   return text_of({{"file", text_or_null(file)}, {"keys", list}});
 }
 
+std::string edge_calibration_json(const std::string& file, const EdgeFile& stored,
+                                  const EdgeCalibration& found) {
+  Json contours = Json::array();
+  for (const CalibratedContour& one : found.contours) {
+    const auto used = [&](double value) { return one.used ? Json(value) : Json(nullptr); };
+    contours.push_back({{"scan", one.scan + 1},
+                        {"contour", one.id},
+                        {"used", one.used},
+                        {"seen_ratio", one.seen_ratio},
+                        {"stretches", one.stretches},
+                        {"out_mm", used(one.out_mm)},
+                        {"scatter_mm", used(one.scatter_mm)}});
+  }
+  Json edge = nullptr;
+  if (found.usable())
+    edge = {{"out_mm", stored.edge.out_mm},   {"sd_mm", stored.edge.sd_mm}, {"spacing_mm", stored.spacing_mm},
+            {"scatter_mm", found.scatter_mm}, {"date", stored.date},        {"scanner", stored.scanner},
+            {"serial", stored.serial}};
+  return text_of({{"file", found.usable() ? Json(file) : Json(nullptr)},
+                  {"calibrated", found.usable()},
+                  {"reason", found.reason},
+                  {"edge", edge},
+                  {"contours", contours}});
+}
+
 std::string new_recipe_json(const std::string& file, const std::string& text) {
   return text_of({{"file", text_or_null(file)}, {"recipe", text}});
 }

@@ -8,7 +8,9 @@
 #include "acquisition/contour_extract.hpp"
 #include "acquisition/files/file_info.hpp"
 #include "acquisition/types/error.hpp"
+#include "cli/edge_file.hpp"
 #include "cli/key_table.hpp"
+#include "registration/edge_calibration.hpp"
 
 namespace arris {
 
@@ -30,6 +32,11 @@ namespace arris {
 [[nodiscard]] std::string keys_json(const std::string& file, const std::vector<Key>& keys,
                                     const std::filesystem::path& folder,
                                     const std::set<std::string>& absent = {});
+
+/// {"file", "calibrated", "reason", "edge": {"out_mm", "sd_mm", ..}, "contours": [{"scan", "contour", ..}]}:
+/// what arris calibrate edge found; file and edge are null when it was refused.
+[[nodiscard]] std::string edge_calibration_json(const std::string& file, const EdgeFile& stored,
+                                                const EdgeCalibration& found);
 
 /// {"file", "recipe"}: where a new recipe was written (null: nowhere) and its TOML text.
 [[nodiscard]] std::string new_recipe_json(const std::string& file, const std::string& text);

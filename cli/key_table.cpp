@@ -82,10 +82,13 @@ std::optional<ErrorText> check_text(const Key& key, const std::string& value) {
                    near.empty() ? correct_it(key) : "did you mean " + quote(near) + "?"};
 }
 
+ErrorText empty_list(const Key& key) {
+  return {key.name + " is empty", {}, "[]", type_text(key), "fill it in: " + key.about};
+}
+
 template <class T>
 std::optional<ErrorText> check_list(const Key& key, const std::vector<T>& values) {
-  if (key.required && values.empty())
-    return ErrorText{key.name + " is empty", {}, "[]", type_text(key), "fill it in: " + key.about};
+  if (key.required && values.empty()) return empty_list(key);
   if (!values.empty() && !key.lengths.empty() &&
       std::find(key.lengths.begin(), key.lengths.end(), values.size()) == key.lengths.end())
     return ErrorText{key.name + " has the wrong length",
@@ -130,6 +133,9 @@ std::optional<ErrorText> check_value(const Key& key) {
                  [&](const std::optional<double>* value) {
                    return value->has_value() ? check_number(key, **value) : std::optional<ErrorText>();
                  },
+                 [&](const std::vector<std::string>* texts) {
+                   return key.required && texts->empty() ? empty_list(key) : std::optional<ErrorText>();
+                 },
                  [&](const auto* values) { return check_list(key, *values); }},
       key.slot);
 }
@@ -156,6 +162,9 @@ std::string value_text(const Key& key, const std::filesystem::path& folder) {
           },
           [&](const std::vector<double>* v) {
             return text_or(v->empty(), "[]", [&] { return list_text(*v, number_text); });
+          },
+          [&](const std::vector<std::string>* v) {
+            return text_or(v->empty(), "[]", [&] { return list_text(*v, quote); });
           }},
       key.slot);
 }
@@ -179,7 +188,8 @@ std::string type_text(const Key& key) {
                  [&](const double*) { return with_range("a number"); },
                  [&](const std::optional<double>*) { return with_range("a number"); },
                  [&](const std::vector<int>*) { return list_type("whole numbers"); },
-                 [&](const std::vector<double>*) { return list_type("numbers"); }},
+                 [&](const std::vector<double>*) { return list_type("numbers"); },
+                 [&](const std::vector<std::string>*) { return list_type("texts in quotes"); }},
       key.slot);
 }
 

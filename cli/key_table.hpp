@@ -16,7 +16,7 @@ namespace arris {
 
 /// Where the value of a key goes. The field holds the default until a file sets it; empty means unset.
 using Slot = std::variant<std::string*, std::filesystem::path*, bool*, int*, double*, std::optional<double>*,
-                          std::vector<int>*, std::vector<double>*>;
+                          std::vector<int>*, std::vector<double>*, std::vector<std::string>*>;
 
 /// One key of a TOML file: what reading, printing, the docs and the tests know of it. Unit ends the name.
 struct Key {
@@ -28,7 +28,7 @@ struct Key {
   std::vector<std::string> later = {};  ///< texts of the format that this version cannot do yet
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
-  std::vector<std::size_t> lengths = {};  ///< how many numbers a list may have; empty: any
+  std::vector<std::size_t> lengths = {};  ///< how many entries a list may have; empty: any
   std::string example = {};               ///< of a key that may stay unset; printed behind a #
 };
 

@@ -63,6 +63,7 @@ Measurement read_measurement(const Recipe& recipe, const std::filesystem::path& 
                              const std::optional<ContourChoice>& choice,
                              const std::optional<TargetSearch>& targets, int threads) {
   Measurement measurement;
+  if (!recipe.scan.edge_calibration.empty()) measurement.edge = read_edge_file(recipe.scan.edge_calibration);
   Scan scan = read_scan(scan_file, unit_mm(recipe.scan.units));
   measurement.cloud = scan.cloud;
   measurement.points_nonfinite = scan.dropped_nonfinite;

@@ -9,10 +9,10 @@
 #include "acquisition/types/error.hpp"
 #include "cli/prepare.hpp"
 #include "cli/recipe_options.hpp"
+#include "cli/register_scan.hpp"
 #include "cli/results.hpp"
 #include "cli/version.hpp"
 #include "registration/deviation.hpp"
-#include "registration/registration.hpp"
 #include "toolpath/correct.hpp"
 
 namespace arris {
@@ -20,46 +20,6 @@ namespace {
 
 constexpr double kDeviationReachMm = 25.0;
 constexpr double kMirrorAlikeRatio = 1.3;  // score of the mirror image over the scan's own
-
-/// What makes a start pose impossible because the input is wrong, not because the data are poor.
-void refuse_wrong_input(const CoarseAlignment& coarse, const Recipe& recipe) {
-  const bool is_face = recipe.part.cad_is != "scanned_face";  // the face beyond is the mirror image
-  if (coarse.inverted && !(coarse.mirrored && is_face))       // a nearly flat part is its own mirror image
-    throw Error(
-        Fault::kInput,
-        {.what =
-             std::string("the CAD mesh is inverted, or ") + (is_face ? "the scan shows the other face"
-                                                             : coarse.mirrored ? "the scan is mirrored"
-                                                                               : "the scan's normals are"),
-         .found = coarse.reason,
-         .needed =
-             "triangle normals of the mesh and normals of the scan that point out of the material, and a "
-             "right-handed scan of the face that the recipe names as scanned",
-         .next =
-             "look which way the mesh's normals point, then how the scan was exported; check part.cad_is"});
-  if (coarse.mirrored)
-    throw Error(
-        Fault::kInput,
-        {.what = is_face ? "the scan is mirrored, or shows the other face" : "the scan is mirrored",
-         .found = "its mirror image fits the part, the scan itself does not",
-         .needed = is_face ? "a right-handed scan of the face that the recipe names as scanned"
-                           : "a right-handed scan of this part",
-         .next = is_face ? "check part.cad_is, contour.accept and toolpath.face; or export the scan again"
-                         : "export the scan again without mirroring, or take the drawing of the other hand"});
-  if (coarse.no_points)
-    throw Error(Fault::kInput, {.what = "no points in the band",
-                                .found = "no scan point near the part at the initial pose",
-                                .needed = "a scan that shows the contour's surroundings (scan.initial, "
-                                          "registration.subdivision.band_mm)",
-                                .next = "check scan.initial, or leave it out to search for the pose"});
-  if (coarse.unit_ratio == 1.0) return;
-  char ratio[32];
-  std::snprintf(ratio, sizeof ratio, "%g", coarse.unit_ratio);
-  throw Error(Fault::kInput, {.what = "the scan is in another unit than the recipe says",
-                              .found = std::string("contours that fit the CAD when scaled by ") + ratio,
-                              .needed = "the file's unit in scan.units (it says " + recipe.scan.units + ")",
-                              .next = "set scan.units in the recipe, or export the scan again"});
-}
 
 void describe_inputs(const Recipe& recipe, const Drawing& drawing, const Measurement& measurement,
                      RunRecord& record) {
@@ -86,12 +46,14 @@ void describe_inputs(const Recipe& recipe, const Drawing& drawing, const Measure
   record.cad_contours = drawing.accepted;
   record.nominal_path = drawing.path;
   record.frame = measurement.frame;
+  if (const std::optional<EdgeFile>& known = measurement.edge)
+    record.edge_offset = {true, known->edge, known->spacing_mm, known->date, known->scanner, known->serial};
 }
 
-RegistrationOptions local_options(const Recipe& recipe, const Eigen::Vector3d& offset_mm, int threads) {
+/// The recipe's, and what is known of the scanner.
+RegistrationOptions options_of(const Recipe& recipe, const Measurement& measurement, int threads) {
   RegistrationOptions options = registration_options(recipe, threads);
-  if (options.coarse.initial_scan_from_cad)  // the recipe speaks of the file's coordinates
-    options.coarse.initial_scan_from_cad->pretranslate(-offset_mm);
+  if (measurement.edge) options.edge.scanner = options.surface.scanner = measurement.edge->edge;
   return options;
 }
 
@@ -202,8 +164,7 @@ Processed process(const Recipe& as_written, const Drawing& drawing, Measurement&
   const CadModel cad = prepare_cad(drawing.mesh, drawing.accepted, drawing.others);
   ScanModel& scan = measurement.prepared.model;
   const Registration found =
-      register_part(cad, scan, local_options(recipe, measurement.cloud.offset_mm, threads));
-  refuse_wrong_input(found.coarse, recipe);
+      register_scan(recipe, cad, measurement, options_of(recipe, measurement, threads));
   record.refusals = found.refusals;
   if (found.coarse.mirror_ratio > 0.0 && found.coarse.mirror_ratio < kMirrorAlikeRatio)
     record.notes.push_back(

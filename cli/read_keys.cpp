@@ -34,17 +34,23 @@ std::string found_text(const toml::node& node) {
   }
 }
 
-bool put_number(const toml::node& node, double& value) {
+bool put_value(const toml::node& node, double& value) {
   if (!node.is_number()) return false;
   value = *node.value<double>();
   return true;
 }
 
-bool put_number(const toml::node& node, int& value) {
+bool put_value(const toml::node& node, int& value) {
   const auto number = node.value_exact<std::int64_t>();
   if (!number || *number < std::numeric_limits<int>::min() || *number > std::numeric_limits<int>::max())
     return false;
   value = static_cast<int>(*number);
+  return true;
+}
+
+bool put_value(const toml::node& node, std::string& value) {
+  if (!node.is_string()) return false;
+  value = node.ref<std::string>();
   return true;
 }
 
@@ -54,7 +60,7 @@ bool put_list(const toml::node& node, std::vector<T>& values) {
   std::vector<T> read;
   for (const toml::node& element : *node.as_array()) {
     T value{};
-    if (!put_number(element, value)) return false;
+    if (!put_value(element, value)) return false;
     read.push_back(value);
   }
   values = std::move(read);
@@ -63,11 +69,7 @@ bool put_list(const toml::node& node, std::vector<T>& values) {
 
 /// Stores the node's value in the slot; false when it is of another type.
 bool put(const toml::node& node, const Slot& slot, const std::filesystem::path& folder) {
-  if (auto* const* text = std::get_if<std::string*>(&slot)) {
-    if (!node.is_string()) return false;
-    **text = node.ref<std::string>();
-    return true;
-  }
+  if (auto* const* text = std::get_if<std::string*>(&slot)) return put_value(node, **text);
   if (auto* const* path = std::get_if<std::filesystem::path*>(&slot)) {
     if (!node.is_string()) return false;
     const std::string& name = node.ref<std::string>();
@@ -81,13 +83,14 @@ bool put(const toml::node& node, const Slot& slot, const std::filesystem::path& 
   }
   if (auto* const* optional = std::get_if<std::optional<double>*>(&slot)) {
     double value = 0.0;
-    if (!put_number(node, value)) return false;
+    if (!put_value(node, value)) return false;
     **optional = value;
     return true;
   }
-  if (auto* const* number = std::get_if<int*>(&slot)) return put_number(node, **number);
-  if (auto* const* number = std::get_if<double*>(&slot)) return put_number(node, **number);
+  if (auto* const* number = std::get_if<int*>(&slot)) return put_value(node, **number);
+  if (auto* const* number = std::get_if<double*>(&slot)) return put_value(node, **number);
   if (auto* const* list = std::get_if<std::vector<int>*>(&slot)) return put_list(node, **list);
+  if (auto* const* list = std::get_if<std::vector<std::string>*>(&slot)) return put_list(node, **list);
   return put_list(node, **std::get_if<std::vector<double>*>(&slot));
 }
 

@@ -32,6 +32,7 @@ struct Recipe {
     std::vector<double> seen_from;  ///< empty, or x, y, z in mm, scan frame
     double outlier_sigmas = 4.0;
     double voxel_mm = 0.0;
+    std::filesystem::path edge_calibration;  ///< empty: where the scanner shows edges is not known
     InitialPose initial;
   };
   struct Contour {

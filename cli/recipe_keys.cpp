@@ -63,6 +63,11 @@ std::vector<Key> scan_keys(Recipe::Scan& scan) {
        .about = "keep one measured point a cube of this edge; 0: keep all",
        .min = 0.0,
        .max = 100.0},
+      {.name = "scan.edge_calibration",
+       .slot = &scan.edge_calibration,
+       .about = "where the scanner shows edges, from arris calibrate edge; without it an edge is known to no "
+                "better than 0.05 mm",
+       .example = "\"edge.toml\""},
       {.name = "scan.initial.scan_from_cad",
        .slot = &scan.initial.scan_from_cad,
        .about =

@@ -5,6 +5,7 @@
 
 #include "cli/cell.hpp"
 #include "cli/drawing.hpp"
+#include "cli/edge_file.hpp"
 #include "cli/recipe.hpp"
 #include "cli/recipe_options.hpp"
 #include "cli/text_file.hpp"
@@ -44,6 +45,7 @@ bool files_are_there(const fs::path& file, const Recipe& recipe, std::vector<Err
   check(recipe.contour.file, "contour.file");
   check(recipe.toolpath.file, "toolpath.file");
   const bool there = problems.size() == before;
+  check(recipe.scan.edge_calibration, "scan.edge_calibration");
   check(recipe.cell, "cell.file");
   return there;
 }
@@ -54,6 +56,15 @@ void check_cell_of(const Recipe& recipe, std::vector<ErrorText>& problems) {
   if (read.problems.empty())
     collect(problems, [&] { check_cell(dialect_from_name(recipe.robot.controller), read.cell); });
   for (ErrorText& problem : read.problems) problems.push_back(std::move(problem));
+}
+
+void check_edge_calibration_of(const Recipe& recipe, std::vector<ErrorText>& problems) {
+  const fs::path& file = recipe.scan.edge_calibration;
+  if (file.empty() || !fs::exists(file)) return;
+  collect(problems, [&] {
+    for (ErrorText& problem : parse_edge_file(file, read_edge_text(file)).problems)
+      problems.push_back(std::move(problem));
+  });
 }
 
 /// The path alone first: a drawing that is refused must not hide what is wrong in the path.
@@ -80,6 +91,7 @@ RecipeProblems problems_of_recipe(const fs::path& file, int threads) {
   const bool has_path = !recipe.toolpath.file.empty() || recipe.toolpath.from_contour.given;
   if (files_are_there(file, recipe, found.problems) && keys_are_good)
     check_drawing_of(recipe, has_path, threads, found.problems);
+  check_edge_calibration_of(recipe, found.problems);
   check_cell_of(recipe, found.problems);
   if (!has_path) found.remark = "for arris inspect alone: it names no tool path";
   return found;

@@ -46,6 +46,7 @@ std::vector<InputFile> hashed_inputs_but_scan(const RunArgs& args, const Recipe&
   add("recipe", args.recipe);
   if (!args.inspect_only) add("path", recipe.toolpath.file);
   add("contour", recipe.contour.file);
+  add("edge_calibration", recipe.scan.edge_calibration);
   if (cell) {
     add("cell", *cell_file(args, recipe));
     add("references", cell->targets_file);

@@ -55,6 +55,7 @@ void print_summary(const RunRecord& record, const std::filesystem::path& folder,
              "an edge to %.3f mm",
              errors.after.mean_mm, errors.after.max_mm, record.method.c_str(), record.edge_limit_mm));
   }
+  console::print("edge offset  " + report::edge_offset_text(record.edge_offset));
   if (record.accepted() && record.method != "rigid")
     console::print("strain       " + report::strain_text(record));
   if (const std::string warning = report::permanence_warning(record); !warning.empty() && record.accepted())

@@ -46,6 +46,10 @@ const std::vector<Definition>& definitions() {
        "motion decided."},
       {"edge limit E",
        "1 / (point density x 50 mm): about the best that an edge can be placed across itself."},
+      {"edge offset",
+       "How far out, in the void, the scanner shows an edge (negative: inside the material), and its "
+       "standard deviation; a property of the scanner, taken off. Not calibrated: zero is taken, and no edge "
+       "is stated better across than that standard deviation."},
       {"surface limit",
        "sigma / sqrt(n), noise over the root of the points within 10 mm: the same along the normal."},
   };

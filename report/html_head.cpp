@@ -216,7 +216,8 @@ std::string facts(const RunRecord& record) {
                         {"outliers, removed", grouped_text(record.points_outlier)},
                         {"used", grouped_text(record.points_used)},
                         {"spacing", mm(record.spacing_mm, 2) + " mm"},
-                        {"noise (sigma)", mm(record.noise_sigma_mm) + " mm"}};
+                        {"noise (sigma)", mm(record.noise_sigma_mm) + " mm"},
+                        {"edge offset", escaped(edge_offset_text(record.edge_offset))}};
   html += tag("div", list("Run", run) + list("Scan", points), "facts");
   html += tag("h3", "Inputs") + inputs_table(record);
   html += tag("p", "result hash: " + tag("span", escaped(record.result_hash), "mono"));

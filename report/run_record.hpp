@@ -12,6 +12,7 @@
 #include "acquisition/types/point_cloud.hpp"
 #include "acquisition/types/triangle_mesh.hpp"
 #include "registration/fixture_targets.hpp"
+#include "report/edge_offset.hpp"
 #include "report/refinement_summary.hpp"
 #include "toolpath/correct.hpp"
 #include "toolpath/robot/row_uncertainty.hpp"
@@ -21,7 +22,7 @@ namespace arris {
 
 /// A file that took part in the run. Its name is printed, its hash decides.
 struct InputFile {
-  std::string role;    ///< "scan", "cad", "path", "recipe", "cell", "contours"
+  std::string role;    ///< "scan", "cad", "path", "recipe", "edge_calibration", "cell", "contours"
   std::string name;    ///< file name without folder
   std::string sha256;  ///< lower-case hex
 };
@@ -93,6 +94,7 @@ struct RunRecord {
   // Acquisition
   std::size_t points_read = 0, points_nonfinite = 0, points_outlier = 0, points_used = 0;
   double spacing_mm = 0.0, noise_sigma_mm = 0.0;
+  EdgeOffset edge_offset;
   std::vector<std::string>
       notes;  ///< acquisition and contour notes in plain words (filled holes, dropped loops)
 

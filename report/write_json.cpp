@@ -103,6 +103,17 @@ Json target(const TargetSighting& sighting) {
           {"over_limit", sighting.over_limit}};
 }
 
+Json edge_offset(const EdgeOffset& offset) {
+  const auto known = [&](const Json& value) { return offset.calibrated ? value : Json(nullptr); };
+  return {{"calibrated", offset.calibrated},
+          {"out_mm", number(offset.edge.out_mm)},
+          {"sd_mm", number(offset.edge.sd_mm)},
+          {"date", known(offset.date)},
+          {"scanner", known(offset.scanner)},
+          {"serial", known(offset.serial)},
+          {"spacing_mm", known(number(offset.spacing_mm))}};
+}
+
 /// The scanner's frame from fixture targets; null without such a cell.
 Json cell(const RunRecord& record) {
   if (!record.frame) return nullptr;
@@ -341,6 +352,7 @@ std::string write_json(const RunRecord& record) {
   json["results"] = results(record);
   json["limits"] = {{"edge_limit_mm", number(record.edge_limit_mm)},
                     {"surface_limit_mm", number(record.surface_limit_mm)},
+                    {"edge_offset", edge_offset(record.edge_offset)},
                     {"surface_profile_mm", number(record.surface_profile_mm)},
                     {"contour_profile_mm", number(record.contour_profile_mm)},
                     {"max_correction_mm", number(record.max_correction_mm)}};

@@ -23,7 +23,7 @@ void expect_one_line(const Ran& ran, const std::string& holds) {
 
 TEST(Program, HelpOfEveryCommandHasAnExample) {
   for (const char* command : {"", "run", "inspect", "batch", "contours", "info", "recipe", "recipe check",
-                              "recipe print", "recipe new", "demo"}) {
+                              "recipe print", "recipe new", "calibrate", "calibrate edge", "demo"}) {
     const Ran ran = run_arris(std::string(command) + " --help");
     EXPECT_EQ(ran.code, 0) << command;
     EXPECT_NE(ran.out.find("Example:\n  arris " + std::string(command)), std::string::npos) << ran.out;
@@ -34,8 +34,7 @@ TEST(Program, HelpOfEveryCommandHasAnExample) {
 
 TEST(Program, ListsOnlyCommandsThatExist) {
   const std::string help = run_arris("--help").out;
-  for (const char* later :
-       {"engrave", "post", "calibrate", "send", "station", "gpio", "archive", "trend", "study"})
+  for (const char* later : {"engrave", "post", "send", "station", "gpio", "archive", "trend", "study"})
     EXPECT_EQ(help.find("  " + std::string(later) + " "), std::string::npos) << later;
 }
 
