@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace arris {
 namespace {
@@ -11,131 +10,149 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kBins = 16;
 
-float float_below(double value) {
-  return std::nextafter(static_cast<float>(value), -kInfinity);
-}
-float float_above(double value) {
-  return std::nextafter(static_cast<float>(value), kInfinity);
-}
+/// A box of floats; the fourth lane is nothing's.
+struct Box {
+  Eigen::Array4f low = Eigen::Array4f::Constant(kInfinity), high = Eigen::Array4f::Constant(-kInfinity);
+  void extend(const Box& other) {
+    low = low.min(other.low);
+    high = high.max(other.high);
+  }
+  void extend(const Eigen::Array4f& point) {
+    low = low.min(point);
+    high = high.max(point);
+  }
+  /// Half the surface: what the heuristic weighs a box by. 0 when empty.
+  [[nodiscard]] float half_area() const {
+    const Eigen::Array4f size = (high - low).max(0.0F);
+    return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+  }
+};
 
-/// Half the surface: what the heuristic weighs a box by.
-double half_area(const Eigen::AlignedBox3d& box) {
-  if (box.isEmpty()) return 0.0;
-  const Eigen::Vector3d size = box.sizes();
-  return size.x() * size.y() + size.y() * size.z() + size.z() * size.x();
-}
+/// What is sorted: the box itself, so that a pass over a range reads memory in order.
+struct Item {
+  Box box;
+  std::int32_t number;
+  [[nodiscard]] Eigen::Array4f middle() const { return 0.5F * (box.low + box.high); }
+};
 
-struct Range {
+struct Piece {
   std::size_t first, last;
-  int depth;  // halvings that led to it
-  Eigen::AlignedBox3d box;
+  int depth;         // halvings that led to it
+  Box box, middles;  // of its items
   [[nodiscard]] std::size_t count() const { return last - first; }
+  /// The piece to part next has most of it; one item cannot be parted.
+  [[nodiscard]] float to_part() const { return count() > 1 ? box.half_area() : -1.0F; }
 };
 
 struct Bin {
-  Eigen::AlignedBox3d box;
+  Box box, middles;
   std::size_t count = 0;
+  void add(const Bin& other) {
+    box.extend(other.box);
+    middles.extend(other.middles);
+    count += other.count;
+  }
+  [[nodiscard]] float cost() const { return box.half_area() * static_cast<float>(count); }
 };
 
 }  // namespace
 
 struct BoxTree::Builder {
-  std::span<const Eigen::AlignedBox3d> boxes;
   BoxTree& tree;
-  std::vector<std::uint32_t> order = std::vector<std::uint32_t>(boxes.size());
+  std::vector<Item> items;
 
-  [[nodiscard]] Eigen::Vector3d middle(std::size_t place) const { return boxes[order[place]].center(); }
-
-  [[nodiscard]] Range range(std::size_t first, std::size_t last, int depth) const {
-    Range made{first, last, depth, {}};
-    for (std::size_t i = first; i < last; ++i) made.box.extend(boxes[order[i]]);
+  [[nodiscard]] Piece piece(std::size_t first, std::size_t last, int depth) const {
+    Piece made{first, last, depth, {}, {}};
+    for (std::size_t i = first; i < last; ++i) {
+      made.box.extend(items[i].box);
+      made.middles.extend(items[i].middle());
+    }
     return made;
   }
 
-  /// Where to part a range of two or more in two: between the bins of the widest axis where the areas cost
-  /// least. In the middle of the order where that parts nothing off (all centres in one place), and from half
-  /// the depth on, which bounds the depth.
-  [[nodiscard]] std::size_t split(const Range& whole) {
-    const std::size_t half = whole.first + whole.count() / 2;
-    Eigen::AlignedBox3d centres;
-    for (std::size_t i = whole.first; i < whole.last; ++i) centres.extend(middle(i));
+  /// Parts a piece of two or more in two: between the bins of the widest axis where the areas cost least. In
+  /// the middle of the order where that parts nothing off (all middles in one place), and from half the depth
+  /// on, which bounds the depth.
+  [[nodiscard]] std::array<Piece, 2> parted(const Piece& whole) {
     int axis = 0;
-    const double width_mm = centres.sizes().maxCoeff(&axis);
-    if (!(width_mm > 0.0)) return half;
-    const auto begin = order.begin() + static_cast<std::ptrdiff_t>(whole.first);
-    const auto end = order.begin() + static_cast<std::ptrdiff_t>(whole.last);
-    if (whole.depth >= kDeepest / 2) {
-      const auto nth = order.begin() + static_cast<std::ptrdiff_t>(half);
-      std::nth_element(begin, nth, end, [&](std::uint32_t a, std::uint32_t b) {
-        const double at_a = boxes[a].center()[axis], at_b = boxes[b].center()[axis];
-        return at_a < at_b || (at_a == at_b && a < b);
-      });
-      return half;
+    const float width_mm = (whole.middles.high - whole.middles.low).head<3>().maxCoeff(&axis);
+    const auto begin = items.begin() + static_cast<std::ptrdiff_t>(whole.first);
+    const auto end = items.begin() + static_cast<std::ptrdiff_t>(whole.last);
+    if (width_mm > 0.0F && whole.depth < kDeepest / 2) {
+      const float low_mm = whole.middles.low[axis], bins_per_mm = static_cast<float>(kBins) / width_mm;
+      const auto bin_of = [&](const Item& item) {
+        const float at_mm = 0.5F * (item.box.low[axis] + item.box.high[axis]) - low_mm;
+        return std::clamp(static_cast<int>(std::min(at_mm * bins_per_mm, 1e3F)), 0, kBins - 1);
+      };
+      std::array<Bin, kBins> bins;
+      for (auto item = begin; item != end; ++item) {
+        Bin& bin = bins[static_cast<std::size_t>(bin_of(*item))];
+        bin.box.extend(item->box);
+        bin.middles.extend(item->middle());
+        ++bin.count;
+      }
+      const int cut = cheapest_cut(bins);
+      const auto middle = std::partition(begin, end, [&](const Item& item) { return bin_of(item) < cut; });
+      const auto place = static_cast<std::size_t>(middle - items.begin());
+      if (place != whole.first && place != whole.last) {
+        Bin left, right;
+        for (int b = 0; b < kBins; ++b) (b < cut ? left : right).add(bins[static_cast<std::size_t>(b)]);
+        return {Piece{whole.first, place, whole.depth + 1, left.box, left.middles},
+                Piece{place, whole.last, whole.depth + 1, right.box, right.middles}};
+      }
     }
-    const auto bin_of = [&](std::uint32_t item) {
-      const double ratio = (boxes[item].center()[axis] - centres.min()[axis]) / width_mm;
-      return std::clamp(static_cast<int>(ratio * kBins), 0, kBins - 1);
-    };
-    const int cut = cheapest_cut(whole, bin_of);
-    const auto parted = std::partition(begin, end, [&](std::uint32_t item) { return bin_of(item) < cut; });
-    const auto place = static_cast<std::size_t>(parted - order.begin());
-    return place == whole.first || place == whole.last ? half : place;
+    const std::size_t half = whole.first + whole.count() / 2;
+    std::nth_element(begin, items.begin() + static_cast<std::ptrdiff_t>(half), end,
+                     [&](const Item& a, const Item& b) {
+                       const float at_a = a.middle()[axis], at_b = b.middle()[axis];
+                       return at_a < at_b || (at_a == at_b && a.number < b.number);
+                     });
+    return {piece(whole.first, half, whole.depth + 1), piece(half, whole.last, whole.depth + 1)};
   }
 
-  template <class BinOf>
-  [[nodiscard]] int cheapest_cut(const Range& whole, const BinOf& bin_of) const {
-    std::array<Bin, kBins> bins;
-    for (std::size_t i = whole.first; i < whole.last; ++i) {
-      Bin& bin = bins[static_cast<std::size_t>(bin_of(order[i]))];
-      bin.box.extend(boxes[order[i]]);
-      ++bin.count;
-    }
-    std::array<double, kBins> right_cost{};
+  [[nodiscard]] static int cheapest_cut(const std::array<Bin, kBins>& bins) {
+    std::array<float, kBins> right_cost{};
     Bin right;
     for (std::size_t b = kBins - 1; b > 0; --b) {
-      right.box.extend(bins[b].box);
-      right.count += bins[b].count;
-      right_cost[b] = half_area(right.box) * static_cast<double>(right.count);
+      right.add(bins[b]);
+      right_cost[b] = right.cost();
     }
     int cut = 1;
-    double least = std::numeric_limits<double>::infinity();
+    float least = kInfinity;
     Bin left;
     for (std::size_t b = 1; b < kBins; ++b) {
-      left.box.extend(bins[b - 1].box);
-      left.count += bins[b - 1].count;
-      const double cost = half_area(left.box) * static_cast<double>(left.count) + right_cost[b];
+      left.add(bins[b - 1]);
+      const float cost = left.cost() + right_cost[b];
       if (cost < least) least = cost, cut = static_cast<int>(b);
     }
     return cut;
   }
 
-  /// Parts the range until it has four pieces, the largest first; returns the node's number.
-  std::int32_t build(const Range& whole) {
-    std::vector<Range> pieces = {whole};
+  /// Parts the piece until there are four, the largest first; returns the node's number.
+  std::int32_t build(const Piece& whole) {
+    std::vector<Piece> pieces = {whole};
     while (pieces.size() < kWidth) {
-      const auto largest = std::max_element(pieces.begin(), pieces.end(), [](const Range& a, const Range& b) {
-        return (a.count() > 1 ? half_area(a.box) + 1e-300 : 0.0) <
-               (b.count() > 1 ? half_area(b.box) + 1e-300 : 0.0);
+      const auto largest = std::max_element(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
+        return a.to_part() < b.to_part();
       });
       if (largest->count() < 2) break;
-      const Range parent = *largest;
-      const std::size_t at = split(parent);
-      *largest = range(parent.first, at, parent.depth + 1);
-      pieces.push_back(range(at, parent.last, parent.depth + 1));
+      const auto [left, right] = parted(*largest);
+      *largest = left;
+      pieces.push_back(right);
     }
     const auto id = static_cast<std::int32_t>(tree.nodes_.size());
     tree.nodes_.emplace_back();
     Node node;
-    node.child.fill(kNone);
-    for (auto* side : {&node.low_mm, &node.high_mm}) side->fill(Eigen::Array4f::Zero());
-    for (std::size_t k = 0; k < pieces.size(); ++k) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        node.low_mm[a][static_cast<int>(k)] = float_below(pieces[k].box.min()[axis] - tree.centre_mm_[axis]);
-        node.high_mm[a][static_cast<int>(k)] = float_above(pieces[k].box.max()[axis] - tree.centre_mm_[axis]);
+    for (std::size_t k = 0; k < kWidth; ++k) {
+      const bool is_there = k < pieces.size();
+      const Box box = is_there ? pieces[k].box : Box();
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        node.low_mm[axis][k] = box.low[static_cast<int>(axis)];
+        node.high_mm[axis][k] = box.high[static_cast<int>(axis)];
       }
-      node.child[k] =
-          pieces[k].count() == 1 ? -1 - static_cast<std::int32_t>(order[pieces[k].first]) : build(pieces[k]);
+      node.child[k] = kNone;
+      if (is_there)
+        node.child[k] = pieces[k].count() == 1 ? -1 - items[pieces[k].first].number : build(pieces[k]);
     }
     tree.nodes_[static_cast<std::size_t>(id)] = node;
     return id;
@@ -144,13 +161,23 @@ struct BoxTree::Builder {
 
 BoxTree::BoxTree(std::span<const Eigen::AlignedBox3d> boxes_mm) {
   if (boxes_mm.empty()) return;
-  Builder builder{boxes_mm, *this};
-  std::iota(builder.order.begin(), builder.order.end(), 0U);
-  const Range whole = builder.range(0, boxes_mm.size(), 0);
-  centre_mm_ = whole.box.center();
-  half_extent_mm_ = 0.5 * whole.box.sizes().maxCoeff();
+  Eigen::AlignedBox3d whole;
+  for (const Eigen::AlignedBox3d& box : boxes_mm) whole.extend(box);
+  centre_mm_ = whole.center();
+  half_extent_mm_ = 0.5 * whole.sizes().maxCoeff();
+  Builder builder{*this, {}};
+  builder.items.reserve(boxes_mm.size());
+  for (const Eigen::AlignedBox3d& box : boxes_mm) {
+    Item item{{}, static_cast<std::int32_t>(builder.items.size())};
+    item.box.low[3] = item.box.high[3] = 0.0F;
+    for (int axis = 0; axis < 3; ++axis) {  // rounded outward
+      item.box.low[axis] = std::nextafter(static_cast<float>(box.min()[axis] - centre_mm_[axis]), -kInfinity);
+      item.box.high[axis] = std::nextafter(static_cast<float>(box.max()[axis] - centre_mm_[axis]), kInfinity);
+    }
+    builder.items.push_back(item);
+  }
   nodes_.reserve(boxes_mm.size() / 2 + 1);
-  builder.build(whole);
+  builder.build(builder.piece(0, builder.items.size(), 0));
   nodes_.shrink_to_fit();
 }
 

@@ -27,33 +27,45 @@ class BoxTree {
   template <class LookAt>
   void search(const Eigen::Vector3d& query_mm, double limit2_mm2, LookAt&& look_at) const;
 
- private:
   static constexpr std::size_t kWidth = 4;
   static constexpr std::int32_t kNone = INT32_MIN;
   static constexpr int kDeepest = 64;  // halvings, see split()
   static constexpr std::size_t kMostOpen = (kWidth - 1) * kDeepest + kWidth;
 
-  /// Boxes of up to four children, each a node (0 and up), an item (-1 - item) or none.
-  struct Node {
-    std::array<Eigen::Array4f, 3> low_mm, high_mm;
-    std::array<std::int32_t, kWidth> child;
+  /// Boxes about the centre of up to four children, each a node (0 and up), an item (-1 - item) or none; the
+  /// boxes of those that are none are empty. Plain numbers, for searches of their own (packet_search.hpp);
+  /// node 0 is the root.
+  struct alignas(16) Node {
+    float low_mm[3][kWidth], high_mm[3][kWidth];
+    std::int32_t child[kWidth];
   };
-  struct Open {
-    float distance2_mm2;
-    std::int32_t child;
-  };
-  struct Builder;
+  [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
+  [[nodiscard]] const Eigen::Vector3d& centre_mm() const { return centre_mm_; }
 
-  // Rounding to float moves a query by at most 2^-24 of its size, the distance to a box by a few times that
-  // of itself. Sixteen roundings are allowed for.
-  static constexpr double kFloatSlackRatio = 1e-6;
-
+  /// How far rounding may have moved a float query about the centre, or a box; mm.
+  [[nodiscard]] double slack_mm(const Eigen::Vector3d& local_mm) const {
+    return kFloatSlackRatio * (local_mm.cwiseAbs().maxCoeff() + half_extent_mm_);
+  }
   /// The float limit that no box within the true one exceeds, for a query that rounding moved by slack_mm.
   [[nodiscard]] static float limit_above(double limit2_mm2, double slack_mm) {
     const double limit_mm = std::sqrt(limit2_mm2) * (1.0 + kFloatSlackRatio) + slack_mm;
     if (!(limit_mm < 1e18)) return std::numeric_limits<float>::infinity();  // its square must stay a float
     return static_cast<float>(limit_mm * limit_mm * (1.0 + kFloatSlackRatio));
   }
+
+ private:
+  struct Open {
+    float distance2_mm2;
+    std::int32_t child;
+  };
+  struct Builder;
+  static Eigen::Map<const Eigen::Array4f, Eigen::Aligned16> side(const float (&values)[kWidth]) {
+    return Eigen::Map<const Eigen::Array4f, Eigen::Aligned16>(values);
+  }
+
+  // Rounding to float moves a query by at most 2^-24 of its size, the distance to a box by a few times that
+  // of itself. Sixteen roundings are allowed for.
+  static constexpr double kFloatSlackRatio = 1e-6;
 
   Eigen::Vector3d centre_mm_ = Eigen::Vector3d::Zero();
   double half_extent_mm_ = 0.0;
@@ -64,10 +76,10 @@ template <class LookAt>
 void BoxTree::search(const Eigen::Vector3d& query_mm, double limit2_mm2, LookAt&& look_at) const {
   if (nodes_.empty()) return;
   const Eigen::Vector3d local_mm = query_mm - centre_mm_;
-  const double slack_mm = kFloatSlackRatio * (local_mm.cwiseAbs().maxCoeff() + half_extent_mm_);
+  const double slack = slack_mm(local_mm);
   const std::array<float, 3> q = {static_cast<float>(local_mm.x()), static_cast<float>(local_mm.y()),
                                   static_cast<float>(local_mm.z())};
-  float limit = limit_above(limit2_mm2, slack_mm);
+  float limit = limit_above(limit2_mm2, slack);
   std::array<Open, kMostOpen> stack;
   std::size_t open = 0;
   stack[open++] = {0.0F, 0};
@@ -78,14 +90,15 @@ void BoxTree::search(const Eigen::Vector3d& query_mm, double limit2_mm2, LookAt&
       const double next2_mm2 = look_at(-1 - at.child);
       if (next2_mm2 < limit2_mm2) {
         limit2_mm2 = next2_mm2;
-        limit = limit_above(limit2_mm2, slack_mm);
+        limit = limit_above(limit2_mm2, slack);
       }
       continue;
     }
     const Node& node = nodes_[static_cast<std::size_t>(at.child)];
     Eigen::Array4f distance2 = Eigen::Array4f::Zero();
     for (std::size_t axis = 0; axis < 3; ++axis)
-      distance2 += (node.low_mm[axis] - q[axis]).max(q[axis] - node.high_mm[axis]).max(0.0F).square();
+      distance2 +=
+          (side(node.low_mm[axis]) - q[axis]).max(q[axis] - side(node.high_mm[axis])).max(0.0F).square();
     // The nearest on top, the others as they come: sorting them costs more than it saves.
     std::size_t nearest = open;
     for (std::size_t k = 0; k < kWidth; ++k) {

@@ -6,6 +6,8 @@
 
 #include "acquisition/geometry/box_tree.hpp"
 #include "acquisition/geometry/mesh_normals.hpp"
+#include "acquisition/geometry/packet_search.hpp"
+#include "acquisition/types/error.hpp"
 
 namespace arris {
 namespace {
@@ -13,6 +15,8 @@ namespace {
 // A foot this near to an edge, in parts of the triangle's longest edge, is on it: the edge's normal decides
 // the side.
 constexpr double kOnEdgeRatio = 1e-9;
+constexpr double kRoundedTwice = 2.0;   // the query and the triangle
+constexpr double kFarForPackets = 1e9;  // mm; squares of floats
 
 struct Foot {
   Eigen::Vector3d foot_mm;
@@ -61,6 +65,29 @@ Foot nearest_on_triangle(const std::array<Eigen::Vector3d, 3>& corners_mm, const
   return answer(b, std::clamp(vc / total, 0.0, 1.0 - b));
 }
 
+/// The nearest triangle of those looked at so far.
+struct Nearest {
+  const TriangleMesh& mesh;
+  const Eigen::Vector3d& query_mm;
+  double limit2_mm2;
+  std::int32_t triangle = -1, item = -1;  // of the mesh, in the tree
+  Foot foot{};
+
+  void look_at(std::int32_t t, std::int32_t its_item) {
+    const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(t)];
+    const Foot candidate = nearest_on_triangle(
+        {mesh.vertices_mm[static_cast<std::size_t>(a)], mesh.vertices_mm[static_cast<std::size_t>(b)],
+         mesh.vertices_mm[static_cast<std::size_t>(c)]},
+        query_mm);
+    if (!(candidate.distance2_mm2 <= limit2_mm2)) return;
+    if (candidate.distance2_mm2 == limit2_mm2 && triangle >= 0 && t > triangle) return;
+    limit2_mm2 = candidate.distance2_mm2;
+    triangle = t;
+    item = its_item;
+    foot = candidate;
+  }
+};
+
 }  // namespace
 
 struct SurfaceQuery::Impl {
@@ -73,6 +100,12 @@ struct SurfaceQuery::Impl {
       for (const Eigen::Vector3d& corner_mm : corners(t)) boxes_mm.back().extend(corner_mm);
     }
     tree = BoxTree(boxes_mm);
+    for (const std::int32_t t : triangle_of) {
+      const std::array<Eigen::Vector3d, 3> p_mm = corners(static_cast<std::size_t>(t));
+      const Eigen::Vector3d& centre_mm = tree.centre_mm();
+      packed.push_back(packet::triangle_of(p_mm[0] - centre_mm, p_mm[1] - centre_mm, p_mm[2] - centre_mm,
+                                           kRoundedTwice * tree.slack_mm(Eigen::Vector3d::Zero())));
+    }
   }
 
   [[nodiscard]] std::array<Eigen::Vector3d, 3> corners(std::size_t t) const {
@@ -84,10 +117,22 @@ struct SurfaceQuery::Impl {
   [[nodiscard]] SurfacePoint describe(std::size_t triangle, const Foot& foot,
                                       const Eigen::Vector3d& query_mm) const;
 
+  /// Looks at what the tree shows within the limit of `nearest`.
+  void search_alone(const Eigen::Vector3d& query_mm, Nearest& nearest) const {
+    tree.search(query_mm, nearest.limit2_mm2, [&](std::int32_t item) {
+      nearest.look_at(triangle_of[static_cast<std::size_t>(item)], item);
+      return nearest.limit2_mm2;
+    });
+  }
+
+  std::int32_t answer_packet(std::span<const Eigen::Vector3d> queries_mm, double max_distance_mm,
+                             std::int32_t near_item, std::span<SurfacePoint> answers) const;
+
   TriangleMesh mesh;
   MeshNormals normals;
   std::vector<std::int32_t> triangle_of;  // mesh triangle of each triangle in the tree
   BoxTree tree;
+  std::vector<packet::Triangle> packed;  // of the triangles in the tree
 };
 
 SurfacePoint SurfaceQuery::Impl::describe(std::size_t triangle, const Foot& foot,
@@ -124,31 +169,47 @@ SurfacePoint SurfaceQuery::Impl::describe(std::size_t triangle, const Foot& foot
   return answer;
 }
 
-namespace {
-
-/// The nearest triangle of those looked at so far.
-struct Nearest {
-  const TriangleMesh& mesh;
-  const Eigen::Vector3d& query_mm;
-  double limit2_mm2;
-  std::int32_t triangle = -1;
-  Foot foot{};
-
-  void look_at(std::int32_t t) {
-    const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(t)];
-    const Foot candidate = nearest_on_triangle(
-        {mesh.vertices_mm[static_cast<std::size_t>(a)], mesh.vertices_mm[static_cast<std::size_t>(b)],
-         mesh.vertices_mm[static_cast<std::size_t>(c)]},
-        query_mm);
-    if (!(candidate.distance2_mm2 <= limit2_mm2)) return;
-    if (candidate.distance2_mm2 == limit2_mm2 && triangle >= 0 && t > triangle) return;
-    limit2_mm2 = candidate.distance2_mm2;
-    triangle = t;
-    foot = candidate;
+/// Answers up to kLanes queries; returns the item to look at first for those that follow.
+std::int32_t SurfaceQuery::Impl::answer_packet(std::span<const Eigen::Vector3d> queries_mm,
+                                               double max_distance_mm, std::int32_t near_item,
+                                               std::span<SurfacePoint> answers) const {
+  packet::Queries packed_queries;
+  packet::Candidates candidates;
+  const auto can_join = [&](const Eigen::Vector3d& q) {
+    return (q - tree.centre_mm()).cwiseAbs().maxCoeff() < kFarForPackets;  // false for what is not finite
+  };
+  const auto leads = std::find_if(queries_mm.begin(), queries_mm.end(), can_join);
+  if (leads != queries_mm.end() && max_distance_mm >= 0.0) {
+    for (std::size_t lane = 0; lane < packet::kLanes; ++lane) {
+      const bool joins = lane < queries_mm.size() && can_join(queries_mm[lane]);
+      const Eigen::Vector3d local_mm = (joins ? queries_mm[lane] : *leads) - tree.centre_mm();
+      for (int axis = 0; axis < 3; ++axis)
+        packed_queries.p_mm[axis][lane] = static_cast<float>(local_mm[axis]);
+      packed_queries.limit2_mm2[lane] =
+          BoxTree::limit_above(max_distance_mm * max_distance_mm, 2.0 * tree.slack_mm(local_mm));
+    }
+    packet::search(tree, packed.data(), near_item, packed_queries, candidates);
   }
-};
-
-}  // namespace
+  for (std::size_t lane = 0; lane < queries_mm.size(); ++lane) {
+    const Eigen::Vector3d& query_mm = queries_mm[lane];
+    answers[lane] = {};
+    if (!query_mm.allFinite() || !(max_distance_mm >= 0.0)) continue;
+    Nearest nearest{mesh, query_mm, max_distance_mm * max_distance_mm};
+    if (!can_join(query_mm) || candidates.count[lane] < 0) {
+      search_alone(query_mm, nearest);
+    } else {
+      for (int k = 0; k < candidates.count[lane]; ++k) {
+        if (candidates.least2_mm2[lane][k] > packed_queries.limit2_mm2[lane]) continue;
+        const std::int32_t item = candidates.item[lane][k];
+        nearest.look_at(triangle_of[static_cast<std::size_t>(item)], item);
+      }
+    }
+    if (nearest.triangle < 0) continue;
+    answers[lane] = describe(static_cast<std::size_t>(nearest.triangle), nearest.foot, query_mm);
+    if (nearest.item >= 0) near_item = nearest.item;
+  }
+  return near_item;
+}
 
 SurfaceQuery::SurfaceQuery(const TriangleMesh& mesh) : impl_(std::make_shared<const Impl>(mesh)) {}
 
@@ -157,13 +218,24 @@ SurfacePoint SurfaceQuery::closest(const Eigen::Vector3d& query_mm, double max_d
   const Impl& impl = *impl_;
   if (!query_mm.allFinite() || !(max_distance_mm >= 0.0)) return {};
   Nearest nearest{impl.mesh, query_mm, max_distance_mm * max_distance_mm};
-  if (hint >= 0) nearest.look_at(hint);
-  impl.tree.search(query_mm, nearest.limit2_mm2, [&](std::int32_t item) {
-    nearest.look_at(impl.triangle_of[static_cast<std::size_t>(item)]);
-    return nearest.limit2_mm2;
-  });
+  if (hint >= 0) nearest.look_at(hint, -1);
+  impl.search_alone(query_mm, nearest);
   if (nearest.triangle < 0) return {};
   return impl.describe(static_cast<std::size_t>(nearest.triangle), nearest.foot, query_mm);
+}
+
+void SurfaceQuery::closest(std::span<const Eigen::Vector3d> queries_mm, double max_distance_mm,
+                           std::span<SurfacePoint> answers) const {
+  if (answers.size() != queries_mm.size())
+    throw Error(Fault::kBug, "closest: " + std::to_string(answers.size()) + " answers for " +
+                                 std::to_string(queries_mm.size()) + " points");
+  const Impl& impl = *impl_;
+  std::int32_t near_item = -1;
+  for (std::size_t first = 0; first < queries_mm.size(); first += packet::kLanes) {
+    const std::size_t count = std::min<std::size_t>(packet::kLanes, queries_mm.size() - first);
+    near_item = impl.answer_packet(queries_mm.subspan(first, count), max_distance_mm, near_item,
+                                   answers.subspan(first, count));
+  }
 }
 
 }  // namespace arris

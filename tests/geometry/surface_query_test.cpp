@@ -302,6 +302,66 @@ TEST(SurfaceQuery, NoHintChangesTheAnswer) {
   }
 }
 
+bool are_equal(const SurfacePoint& a, const SurfacePoint& b) {
+  return a.triangle == b.triangle && a.foot_mm == b.foot_mm && a.normal == b.normal &&
+         a.barycentric == b.barycentric && a.distance_mm == b.distance_mm && a.signed_mm == b.signed_mm &&
+         a.on_border == b.on_border;
+}
+
+/// Points in a row and points anywhere, on the mesh and beyond reach, and some that are no points.
+std::vector<Eigen::Vector3d> mixed_queries(const TriangleMesh& mesh, double size_mm, unsigned seed) {
+  Random random(seed);
+  std::vector<Eigen::Vector3d> queries_mm;
+  const Eigen::Vector3d middle_mm = mesh.vertices_mm.front();
+  const Eigen::Vector3d step_mm = random.in_cube_mm(0.01 * size_mm);
+  for (int i = 0; i < 200; ++i) queries_mm.push_back(middle_mm + (i - 100) * step_mm);
+  for (int i = 0; i < 203; ++i) queries_mm.push_back(middle_mm + random.in_cube_mm(2.0 * size_mm));
+  for (std::size_t v = 0; v < mesh.vertices_mm.size(); v += 1 + mesh.vertices_mm.size() / 100)
+    queries_mm.push_back(mesh.vertices_mm[v]);
+  queries_mm[5].x() = std::numeric_limits<double>::quiet_NaN();
+  queries_mm[16].setConstant(std::numeric_limits<double>::infinity());
+  for (int axis = 0; axis < 3; ++axis) queries_mm.push_back(middle_mm + 1e12 * Eigen::Vector3d::Unit(axis));
+  return queries_mm;
+}
+
+TEST(SurfaceQuery, ManyPointsGetTheAnswersOfEachAlone) {
+  TriangleMesh needles = triangle_soup(300, 21);  // each third corner almost on the line of the others
+  for (std::size_t t = 0; t < needles.triangles.size(); ++t)
+    needles.vertices_mm[3 * t + 2] =
+        0.5 * (needles.vertices_mm[3 * t] + needles.vertices_mm[3 * t + 1]) +
+        std::pow(10.0, -static_cast<double>(t % 12)) * Eigen::Vector3d(0.3, 0.2, -0.1);
+  TriangleMesh stacked;  // more triangles in one place than a packet can list
+  for (int copy = 0; copy < 40; ++copy) {
+    for (const auto& t : box_mesh(kHalf_mm).triangles) {
+      stacked.triangles.push_back(t);
+      for (std::int32_t& corner : stacked.triangles.back()) corner += 8 * copy;
+    }
+    for (const Eigen::Vector3d& v_mm : box_mesh(kHalf_mm).vertices_mm) stacked.vertices_mm.push_back(v_mm);
+  }
+  const std::vector<TriangleMesh> meshes = {triangle_soup(2000, 20),
+                                            needles,
+                                            stacked,
+                                            box_mesh(kHalf_mm),
+                                            sphere_mesh(50.0, 4),
+                                            sheet_mesh(60.0, 25),
+                                            moved(sphere_mesh(50.0, 4), far_motion(1e6)),
+                                            moved(sheet_mesh(1e-3, 4), far_motion(10.0)),
+                                            {{{1, 2, 3}}, {}}};
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    const SurfaceQuery query(meshes[m]);
+    const std::vector<Eigen::Vector3d> queries_mm = mixed_queries(meshes[m], 60.0, 22);
+    for (const double reach_mm : {1e30, 20.0, 0.5, 0.0, -1.0}) {
+      std::vector<SurfacePoint> answers(queries_mm.size());
+      query.closest(queries_mm, reach_mm, answers);
+      for (std::size_t i = 0; i < queries_mm.size(); ++i)
+        ASSERT_TRUE(are_equal(answers[i], query.closest(queries_mm[i], reach_mm)))
+            << "mesh " << m << " point " << i << " reach " << reach_mm;
+    }
+  }
+  std::vector<SurfacePoint> too_few(1);
+  EXPECT_THROW(SurfaceQuery(meshes[0]).closest(mixed_queries(meshes[0], 1.0, 1), 1.0, too_few), Error);
+}
+
 TEST(SurfaceQuery, SeesThroughTrianglesWithoutArea) {
   // A T-junction on a box edge, closed by a triangle without area, as CAD exports write them.
   TriangleMesh mesh = box_mesh(kHalf_mm);
