@@ -165,6 +165,24 @@ void add_calibrate(CLI::App& app, const Common& common, Chosen& chosen) {
   add_calibrate_edge(*command, common, chosen);
 }
 
+void add_map(CLI::App& app, const Common& common, Chosen& chosen) {
+  const auto args = std::make_shared<MapArgs>();
+  CLI::App* command =
+      add_command(app, "map", "Lay a whole scan on its drawing and write the deviation of every point",
+                  "arris map bracket.toml --scan part7.ply --out part7.map.ply");
+  command->add_option("RECIPE", args->recipe, "recipe of the part number")->required()->option_text(" ");
+  command->add_option("--scan", args->scan, "scan of the part (ply, stl, pcd, off, text)")
+      ->required()
+      ->option_text("FILE (required)");
+  command->add_option("--out", args->out, "file of the map; <scan>.map.ply unless given")
+      ->option_text("FILE.ply");
+  command->callback([args, &common, &chosen] {
+    args->json = common.json;
+    args->threads = common.threads;
+    chosen = [args] { return run_map(*args); };
+  });
+}
+
 void add_info(CLI::App& app, const Common& common, Chosen& chosen) {
   const auto args = std::make_shared<InfoArgs>();
   CLI::App* command = add_command(app, "info", "What a scan or mesh file holds", "arris info part7.ply");
@@ -319,6 +337,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_run(app, common, chosen, false);
   add_run(app, common, chosen, true);
   add_batch(app, common, chosen);
+  add_map(app, common, chosen);
   add_contours(app, common, chosen);
   add_calibrate(app, common, chosen);
   add_info(app, common, chosen);

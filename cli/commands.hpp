@@ -41,6 +41,16 @@ struct InfoArgs {
 };
 [[nodiscard]] int run_info(const InfoArgs& args);
 
+/// `arris map RECIPE --scan FILE`: the whole scan laid on the drawing, and the deviation of every point.
+struct MapArgs {
+  std::filesystem::path recipe, scan;
+  std::optional<std::filesystem::path> out;  ///< none: <scan stem>.map.ply
+  bool json = false;
+  int threads = 0;
+};
+/// Throws Error(kInput) for what keeps the scan from being laid on the drawing; judges nothing.
+[[nodiscard]] int run_map(const MapArgs& args);
+
 /// `arris recipe check|print|new`
 struct RecipeCheckArgs {
   std::filesystem::path file;

@@ -134,4 +134,20 @@ std::string info_json(const std::string& file, const FileInfo& info) {
                   {"notes", info.notes}});
 }
 
+std::string map_json(const MapResult& map) {
+  Json motion = Json::array();
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) motion.push_back(map.scan_from_cad.matrix()(row, column));
+  return text_of({{"file", map.file},
+                  {"points", map.points},
+                  {"points_on_drawing", map.on_drawing},
+                  {"mean_mm", number(map.mean_mm)},
+                  {"rms_mm", number(map.rms_mm)},
+                  {"min_mm", number(map.least_mm)},
+                  {"max_mm", number(map.most_mm)},
+                  {"in_tolerance_ratio", number(map.in_tolerance_ratio)},
+                  {"scan_from_cad", motion},
+                  {"free_directions", map.free_directions}});
+}
+
 }  // namespace arris

@@ -9,6 +9,7 @@
 #include "acquisition/files/file_info.hpp"
 #include "acquisition/types/error.hpp"
 #include "cli/edge_file.hpp"
+#include "acquisition/types/frames.hpp"
 #include "cli/key_table.hpp"
 #include "registration/edge_calibration.hpp"
 
@@ -40,5 +41,15 @@ namespace arris {
 
 /// {"file", "recipe"}: where a new recipe was written (null: nowhere) and its TOML text.
 [[nodiscard]] std::string new_recipe_json(const std::string& file, const std::string& text);
+
+/// `arris map --json`; lengths in mm, file coordinates.
+struct MapResult {
+  std::string file;
+  std::size_t points = 0, on_drawing = 0;
+  double mean_mm = 0.0, rms_mm = 0.0, least_mm = 0.0, most_mm = 0.0, in_tolerance_ratio = 0.0;
+  RigidMotion scan_from_cad;
+  std::vector<std::string> free_directions;
+};
+[[nodiscard]] std::string map_json(const MapResult& map);
 
 }  // namespace arris

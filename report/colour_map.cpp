@@ -73,15 +73,16 @@ Rgb ColourMap::no_data() {
 }
 
 ColourMap colour_map_for(std::span<const float> deviation_mm, double tolerance_mm) {
-  std::vector<double> size;
+  std::vector<float> size;  // of a big scan: no more memory than the deviations themselves
+  size.reserve(deviation_mm.size());
   for (const float d : deviation_mm)
-    if (std::isfinite(d)) size.push_back(std::abs(static_cast<double>(d)));
+    if (std::isfinite(d)) size.push_back(std::abs(d));
   const double half = std::max(0.0, 0.5 * tolerance_mm);
   double target = 3.0 * half;
   if (!size.empty()) {
     const auto at = size.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(size.size() - 1));
     std::nth_element(size.begin(), at, size.end());
-    target = std::max(target, *at);
+    target = std::max(target, static_cast<double>(*at));
   }
   const double step = nice_at_least((target - half) / kStepsBeyond);
   return ColourMap(tolerance_mm, half + kStepsBeyond * step);

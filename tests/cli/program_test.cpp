@@ -24,6 +24,8 @@ void expect_one_line(const Ran& ran, const std::string& holds) {
 TEST(Program, HelpOfEveryCommandHasAnExample) {
   for (const char* command : {"", "run", "inspect", "batch", "contours", "info", "recipe", "recipe check",
                               "recipe print", "recipe new", "calibrate", "calibrate edge", "demo"}) {
+  for (const char* command : {"", "run", "inspect", "batch", "map", "contours", "info", "recipe",
+                              "recipe check", "recipe print", "recipe new", "demo"}) {
     const Ran ran = run_arris(std::string(command) + " --help");
     EXPECT_EQ(ran.code, 0) << command;
     EXPECT_NE(ran.out.find("Example:\n  arris " + std::string(command)), std::string::npos) << ran.out;
@@ -54,6 +56,7 @@ TEST(Program, UsageErrorsAreTwo) {
       {"run --scan a", "RECIPE is required"},
       {"batch x.toml", "SCAN is required"},
       {"batch x.toml s.ply --jbs 2", "did you mean --jobs?"},
+      {"map x.toml", "--scan is required"},
       {"contours x.stl --units km", "km"},
       {"contours x.stl --accept one", "--accept"},
       {"contours x.stl --out c.json", "--accept"},
@@ -73,9 +76,10 @@ TEST(Program, UsageErrorsAreTwo) {
 
 TEST(Program, MissingFilesAreThreeAndLeaveNothing) {
   const testing::TestFolder folder;
-  for (const char* line : {"run none.toml --scan s.ply", "inspect none.toml --scan s.ply",
-                           "batch none.toml s.ply", "contours none.stl", "info none.ply",
-                           "recipe check none.toml", "recipe print none.toml", "recipe new --cad none.stl"}) {
+  for (const char* line :
+       {"run none.toml --scan s.ply", "inspect none.toml --scan s.ply", "batch none.toml s.ply",
+        "map none.toml --scan s.ply", "contours none.stl", "info none.ply", "recipe check none.toml",
+        "recipe print none.toml", "recipe new --cad none.stl"}) {
     const Ran ran = run_arris(line, folder.path());
     EXPECT_EQ(ran.code, 3) << line << ": " << ran.err;
     expect_one_line(ran, "none.");

@@ -6,7 +6,7 @@
 namespace arris::bench {
 namespace {
 
-constexpr int kRoundsToPoint = 200, kRoundsToPlane = 50;  // PCL's own default is 10
+constexpr int kRoundsToPoint = 200;  // PCL's own default is 10
 constexpr double kSmallestChange = 1e-10;
 
 template <class Point>
@@ -53,7 +53,7 @@ RigidMotion pcl_point_to_point(std::span<const Eigen::Vector3d> model_mm,
 RigidMotion pcl_point_to_plane(std::span<const Eigen::Vector3d> model_mm,
                                std::span<const Eigen::Vector3d> data_mm,
                                std::span<const Eigen::Vector3d> data_normals,
-                               const RigidMotion& start_scan_from_cad, double reach_mm) {
+                               const RigidMotion& start_scan_from_cad, double reach_mm, int most_rounds) {
   const auto data = cloud_of<pcl::PointNormal>(data_mm);
   for (std::size_t i = 0; i < data_normals.size(); ++i)
     (*data)[i].getNormalVector3fMap() = data_normals[i].cast<float>();
@@ -61,7 +61,7 @@ RigidMotion pcl_point_to_plane(std::span<const Eigen::Vector3d> model_mm,
   icp.setInputSource(cloud_of<pcl::PointNormal>(model_mm));
   icp.setInputTarget(data);
   icp.setMaxCorrespondenceDistance(reach_mm);
-  return run(icp, kRoundsToPlane, start_scan_from_cad);
+  return run(icp, most_rounds, start_scan_from_cad);
 }
 
 }  // namespace arris::bench

@@ -16,10 +16,11 @@ namespace arris::bench {
                                              const RigidMotion& start_scan_from_cad);
 
 /// pcl::IterativeClosestPointWithNormals: the same to the planes of the data points; pairs farther apart than
-/// reach_mm are left out; at most 50 rounds.
+/// reach_mm are left out.
 [[nodiscard]] RigidMotion pcl_point_to_plane(std::span<const Eigen::Vector3d> model_mm,
                                              std::span<const Eigen::Vector3d> data_mm,
                                              std::span<const Eigen::Vector3d> data_normals,
-                                             const RigidMotion& start_scan_from_cad, double reach_mm);
+                                             const RigidMotion& start_scan_from_cad, double reach_mm,
+                                             int most_rounds = 50);
 
 }  // namespace arris::bench
