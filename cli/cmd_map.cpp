@@ -62,8 +62,9 @@ Start start_pose(const Recipe& recipe, const CadModel& cad, const Scan& scan, in
                                 .needed = "contours of the drawing in the scan, or a start pose",
                                 .next = "give scan.initial in the recipe"});
   start.scan_from_cad = found.scan_from_cad;
-  start.options.start_scale_mm =
-      std::max(kScaleScores * found.score_mm, kScaleSpacings * prepared.model.spacing_mm);
+  start.options.start_scale_mm =  // far from the contours a bent part may be off by more than the pose
+      std::max({start.options.start_scale_mm, kScaleScores * found.score_mm,
+                kScaleSpacings * prepared.model.spacing_mm});
   return start;
 }
 
@@ -146,11 +147,13 @@ int run_map(const MapArgs& args) {
   scan.triangles = {};
   WholeFit fit = fit_whole(cad.surface, scan.cloud.points_mm, start.scan_from_cad, start.options);
   if (!fit.usable())
-    throw Error(Fault::kInput, {.what = "the scan does not fit the drawing",
-                                .where = args.scan.string(),
-                                .found = fit.reason,
-                                .needed = "a scan of this part, near the start pose",
-                                .next = "check scan.initial and scan.units of the recipe"});
+    throw Error(Fault::kInput,
+                {.what = "the scan does not fit the drawing",
+                 .where = args.scan.string(),
+                 .found = fit.reason,
+                 .needed = "a scan of this part, near the start pose",
+                 .next = "check scan.initial and scan.units of the recipe; of a bent part's band try "
+                         "arris inspect, whose pose the contours hold"});
   stop_if_interrupted();
   const std::vector<float> deviation_mm =
       signed_deviation_mm(cad.surface, fit.scan_from_cad, scan.cloud.points_mm, kReachMm, args.threads);

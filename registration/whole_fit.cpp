@@ -18,9 +18,10 @@ constexpr double kAnneal = 0.5;       // robust scale of the next round over thi
 constexpr double kScaleSigmas = 3.0;  // its end, in robust standard deviations of the residuals
 constexpr double kSmallestScaleMm = 1e-6;
 constexpr double kReachScales = 3.0;
-constexpr double kFewSettledMm = 0.05, kManySettledMm = 2e-4;  // a step this small ends the few, the many
+constexpr double kFewSettledMm = 0.05, kManySettledMm = 2e-3;  // a step this small ends the few, the many
 constexpr int kMostFew = 60, kMostMany = 30;
-constexpr double kFreeRatio = 1e-7;  // of the largest eigenvalue: the surface leaves this direction free
+constexpr double kFreeRatio =
+    1e-4;  // of the largest eigenvalue, as in rigid ICP: held too badly to be moved along
 constexpr int kMostRefills = 3;
 constexpr double kRefillMargin = 1.2;
 constexpr double kFewestPartnersRatio = 0.1;
@@ -98,16 +99,20 @@ class WholeFitter {
     find_feet();
     std::vector<double> sizes_mm;
     Eigen::Vector3d sum_mm = Eigen::Vector3d::Zero();
-    for (const Row& row : feet_)
+    double partners = 0.0;
+    for (const Row& row : feet_) {
       if (row.valid) {
-        sizes_mm.push_back(std::abs(row.residual_mm));
         sum_mm += row.x_mm;
+        ++partners;
+        sizes_mm.push_back(std::abs(row.residual_mm));
+      } else if (row.triangle < 0) {  // else the scale would shrink to the few places where a bent part fits
+        sizes_mm.push_back(kReachScales * scale_mm_);
       }
-    const auto partners = static_cast<double>(sizes_mm.size());
+    }
     result.partner_ratio = partners / std::max(1.0, static_cast<double>(feet_.size()));
     if (partners < kFewestPartners || result.partner_ratio < kFewestPartnersRatio) {
-      result.reason = std::to_string(sizes_mm.size()) + " of " + std::to_string(feet_.size()) +
-                      " scan points lie near the drawing's surface";
+      result.reason = std::to_string(static_cast<std::size_t>(partners)) + " of " +
+                      std::to_string(feet_.size()) + " scan points lie near the drawing's surface";
       return {};
     }
     pivot_mm_ = sum_mm / partners;
@@ -121,7 +126,8 @@ class WholeFitter {
     }
     reach_mm_ = std::sqrt(spread2_mm2 / partners) + 1e-6;
     result.rms_mm = equations.weight > 0.0 ? std::sqrt(equations.cost / equations.weight) : 0.0;
-    floor_mm_ = std::max(kSmallestScaleMm, kScaleSigmas * 1.4826 * median_of(std::move(sizes_mm)));
+    floor_mm_ = std::clamp(kScaleSigmas * 1.4826 * median_of(std::move(sizes_mm)), kSmallestScaleMm,
+                           options_.start_scale_mm);
     return equations;
   }
 
@@ -142,9 +148,12 @@ class WholeFitter {
     sd_mm_ = std::sqrt(equations.cost / equations.weight / least);
     const Matrix6 back = scale.cwiseInverse().asDiagonal() * eigen.eigenvectors();
     held_ = back * held.asDiagonal() * back.transpose();
-    const Vector6 delta = scale.cwiseProduct(eigen.eigenvectors() * along);
+    Vector6 delta = scale.cwiseProduct(eigen.eigenvectors() * along);
+    const double moved_mm = delta.tail<3>().norm() + delta.head<3>().norm() * reach_mm_;
+    // A step beyond what the start may be off by follows the misfit of a bent part, not the pose.
+    if (moved_mm > options_.start_scale_mm) delta *= options_.start_scale_mm / moved_mm;
     cad_from_scan_ = motion_of(delta, pivot_mm_) * cad_from_scan_;
-    return delta.tail<3>().norm() + delta.head<3>().norm() * reach_mm_;
+    return moved_mm;
   }
 
   const SurfaceQuery& cad_;

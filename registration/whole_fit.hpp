@@ -15,7 +15,7 @@ struct WholeFitOptions {
   double start_scale_mm = 20.0;  ///< robust scale at the start: about the error of the start pose
   int few_points = 1500;         ///< until the step is small
   int many_points = 20000;       ///< from there on, and more where the surface holds the part badly:
-  double wanted_sd_mm = 0.003;   ///< as many as bring the pose's standard deviation down to this
+  double wanted_sd_mm = 0.005;   ///< as many as bring the pose's standard deviation down to this
   int threads = 0;
 };
 

@@ -8,7 +8,8 @@ namespace arris {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kBins = 16;
+constexpr int kBins = 16, kFewBins = 6;
+constexpr std::size_t kFewItems = 24;  // of so few the cuts are looked at more coarsely
 
 /// A box of floats; the fourth lane is nothing's.
 struct Box {
@@ -79,12 +80,14 @@ struct BoxTree::Builder {
     const auto begin = items.begin() + static_cast<std::ptrdiff_t>(whole.first);
     const auto end = items.begin() + static_cast<std::ptrdiff_t>(whole.last);
     if (width_mm > 0.0F && whole.depth < kDeepest / 2) {
-      const float low_mm = whole.middles.low[axis], bins_per_mm = static_cast<float>(kBins) / width_mm;
+      const int bin_count = whole.count() <= kFewItems ? kFewBins : kBins;
+      const float low_mm = whole.middles.low[axis], bins_per_mm = static_cast<float>(bin_count) / width_mm;
       const auto bin_of = [&](const Item& item) {
         const float at_mm = 0.5F * (item.box.low[axis] + item.box.high[axis]) - low_mm;
-        return std::clamp(static_cast<int>(std::min(at_mm * bins_per_mm, 1e3F)), 0, kBins - 1);
+        return std::clamp(static_cast<int>(std::min(at_mm * bins_per_mm, 1e3F)), 0, bin_count - 1);
       };
-      std::array<Bin, kBins> bins;
+      std::array<Bin, kBins> all_bins;
+      const std::span<Bin> bins(all_bins.data(), static_cast<std::size_t>(bin_count));
       for (auto item = begin; item != end; ++item) {
         Bin& bin = bins[static_cast<std::size_t>(bin_of(*item))];
         bin.box.extend(item->box);
@@ -96,7 +99,7 @@ struct BoxTree::Builder {
       const auto place = static_cast<std::size_t>(middle - items.begin());
       if (place != whole.first && place != whole.last) {
         Bin left, right;
-        for (int b = 0; b < kBins; ++b) (b < cut ? left : right).add(bins[static_cast<std::size_t>(b)]);
+        for (int b = 0; b < bin_count; ++b) (b < cut ? left : right).add(bins[static_cast<std::size_t>(b)]);
         return {Piece{whole.first, place, whole.depth + 1, left.box, left.middles},
                 Piece{place, whole.last, whole.depth + 1, right.box, right.middles}};
       }
@@ -110,17 +113,17 @@ struct BoxTree::Builder {
     return {piece(whole.first, half, whole.depth + 1), piece(half, whole.last, whole.depth + 1)};
   }
 
-  [[nodiscard]] static int cheapest_cut(const std::array<Bin, kBins>& bins) {
+  [[nodiscard]] static int cheapest_cut(std::span<const Bin> bins) {
     std::array<float, kBins> right_cost{};
     Bin right;
-    for (std::size_t b = kBins - 1; b > 0; --b) {
+    for (std::size_t b = bins.size() - 1; b > 0; --b) {
       right.add(bins[b]);
       right_cost[b] = right.cost();
     }
     int cut = 1;
     float least = kInfinity;
     Bin left;
-    for (std::size_t b = 1; b < kBins; ++b) {
+    for (std::size_t b = 1; b < bins.size(); ++b) {
       left.add(bins[b - 1]);
       const float cost = left.cost() + right_cost[b];
       if (cost < least) least = cost, cut = static_cast<int>(b);
@@ -128,9 +131,16 @@ struct BoxTree::Builder {
     return cut;
   }
 
-  /// Parts the piece until there are four, the largest first; returns the node's number.
-  std::int32_t build(const Piece& whole) {
-    std::vector<Piece> pieces = {whole};
+  /// Up to four pieces of one: items, or parted until there are four, the largest first.
+  [[nodiscard]] std::vector<Piece> pieces_of(const Piece& whole) {
+    std::vector<Piece> pieces;
+    pieces.reserve(kWidth);
+    if (whole.count() <= kWidth) {
+      for (std::size_t i = whole.first; i < whole.last; ++i)
+        pieces.push_back({i, i + 1, whole.depth + 1, items[i].box, {}});
+      return pieces;
+    }
+    pieces.push_back(whole);
     while (pieces.size() < kWidth) {
       const auto largest = std::max_element(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
         return a.to_part() < b.to_part();
@@ -140,6 +150,12 @@ struct BoxTree::Builder {
       *largest = left;
       pieces.push_back(right);
     }
+    return pieces;
+  }
+
+  /// Returns the node's number.
+  std::int32_t build(const Piece& whole) {
+    const std::vector<Piece> pieces = pieces_of(whole);
     const auto id = static_cast<std::int32_t>(tree.nodes_.size());
     tree.nodes_.emplace_back();
     Node node;

@@ -24,24 +24,37 @@ void check_indices(const TriangleMesh& mesh) {
                                      " of " + std::to_string(count));
 }
 
-void number_edges(const TriangleMesh& mesh, MeshNormals& normals) {
-  struct Side {
-    std::int32_t low, high, triangle;
-    std::int32_t k;
+/// Side k of a triangle, by its ends.
+struct Side {
+  std::int32_t low, high, triangle, k;
+};
+
+/// By low, high, triangle, k. The low end by counting: a vertex has few sides, and these are then sorted.
+std::vector<Side> sorted_sides(const TriangleMesh& mesh) {
+  std::vector<std::size_t> first(mesh.vertices_mm.size() + 1, 0);
+  const auto each_side = [&](const auto& visit) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (std::int32_t k = 0; k < 3; ++k) {
+        const auto [low, high] = std::minmax(mesh.triangles[t][at(k)], mesh.triangles[t][at((k + 1) % 3)]);
+        visit(Side{low, high, static_cast<std::int32_t>(t), k});
+      }
   };
-  std::vector<Side> sides;
-  sides.reserve(3 * mesh.triangles.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::int32_t k = 0; k < 3; ++k) {
-      const std::int32_t a = mesh.triangles[t][at(k)];
-      const std::int32_t b = mesh.triangles[t][at((k + 1) % 3)];
-      sides.push_back({std::min(a, b), std::max(a, b), static_cast<std::int32_t>(t), k});
-    }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    if (a.low != b.low) return a.low < b.low;
-    if (a.high != b.high) return a.high < b.high;
-    return a.triangle != b.triangle ? a.triangle < b.triangle : a.k < b.k;
-  });
+  each_side([&](const Side& side) { ++first[at(side.low) + 1]; });
+  for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
+  std::vector<Side> sides(3 * mesh.triangles.size());
+  std::vector<std::size_t> next = first;
+  each_side([&](const Side& side) { sides[next[at(side.low)]++] = side; });
+  for (std::size_t v = 0; v + 1 < first.size(); ++v)
+    std::sort(sides.begin() + static_cast<std::ptrdiff_t>(first[v]),
+              sides.begin() + static_cast<std::ptrdiff_t>(first[v + 1]), [](const Side& a, const Side& b) {
+                if (a.high != b.high) return a.high < b.high;
+                return a.triangle != b.triangle ? a.triangle < b.triangle : a.k < b.k;
+              });
+  return sides;
+}
+
+void number_edges(const TriangleMesh& mesh, MeshNormals& normals) {
+  const std::vector<Side> sides = sorted_sides(mesh);
   normals.edge_of.resize(mesh.triangles.size());
   normals.vertex_is_border.assign(mesh.vertices_mm.size(), 0);
   for (std::size_t first = 0; first < sides.size();) {

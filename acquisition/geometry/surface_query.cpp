@@ -88,6 +88,14 @@ struct Nearest {
   }
 };
 
+/// Four times the coordinate of a foot that counts as on an edge; above 1 for a triangle without area.
+float far_inside_of(const std::array<Eigen::Vector3d, 3>& p_mm) {
+  const Eigen::Vector3d ab = p_mm[1] - p_mm[0], ac = p_mm[2] - p_mm[0];
+  const double longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
+  const double ratio = 4.0 * kOnEdgeRatio * longest2 / ab.cross(ac).norm();
+  return ratio < 1.0 ? static_cast<float>(ratio) : 2.0F;
+}
+
 }  // namespace
 
 struct SurfaceQuery::Impl {
@@ -100,6 +108,7 @@ struct SurfaceQuery::Impl {
       for (const Eigen::Vector3d& corner_mm : corners(t)) boxes_mm.back().extend(corner_mm);
     }
     tree = BoxTree(boxes_mm);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) far_inside.push_back(far_inside_of(corners(t)));
     for (const std::int32_t t : triangle_of) {
       const std::array<Eigen::Vector3d, 3> p_mm = corners(static_cast<std::size_t>(t));
       const Eigen::Vector3d& centre_mm = tree.centre_mm();
@@ -131,6 +140,7 @@ struct SurfaceQuery::Impl {
   TriangleMesh mesh;
   MeshNormals normals;
   std::vector<std::int32_t> triangle_of;  // mesh triangle of each triangle in the tree
+  std::vector<float> far_inside;  // of all: a foot whose barycentric coordinates exceed it is on no edge
   BoxTree tree;
   std::vector<packet::Triangle> packed;  // of the triangles in the tree
 };
@@ -143,6 +153,13 @@ SurfacePoint SurfaceQuery::Impl::describe(std::size_t triangle, const Foot& foot
   answer.barycentric = foot.barycentric;
   answer.distance_mm = std::sqrt(foot.distance2_mm2);
   answer.normal = normals.face[triangle];
+
+  const auto sign = [&] {
+    const bool outside = answer.normal.dot(query_mm - foot.foot_mm) >= 0.0;
+    answer.signed_mm = outside ? answer.distance_mm : -answer.distance_mm;
+    return answer;
+  };
+  if (foot.barycentric.minCoeff() > static_cast<double>(far_inside[triangle])) return sign();
 
   const std::array<Eigen::Vector3d, 3> p_mm = corners(triangle);
   const std::array<double, 3> edge_mm = {(p_mm[1] - p_mm[0]).norm(), (p_mm[2] - p_mm[1]).norm(),
@@ -164,9 +181,7 @@ SurfacePoint SurfaceQuery::Impl::describe(std::size_t triangle, const Foot& foot
   }
   if (answer.normal.squaredNorm() < 0.5)
     answer.normal = normals.face[triangle];  // faces folded onto each other
-  const bool outside = answer.normal.dot(query_mm - foot.foot_mm) >= 0.0;
-  answer.signed_mm = outside ? answer.distance_mm : -answer.distance_mm;
-  return answer;
+  return sign();
 }
 
 /// Answers up to kLanes queries; returns the item to look at first for those that follow.
