@@ -8,8 +8,8 @@
 #include "acquisition/contour_extract.hpp"
 #include "acquisition/files/file_info.hpp"
 #include "acquisition/types/error.hpp"
-#include "cli/edge_file.hpp"
 #include "acquisition/types/frames.hpp"
+#include "cli/edge_file.hpp"
 #include "cli/key_table.hpp"
 #include "registration/edge_calibration.hpp"
 

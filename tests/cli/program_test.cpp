@@ -22,10 +22,9 @@ void expect_one_line(const Ran& ran, const std::string& holds) {
 }
 
 TEST(Program, HelpOfEveryCommandHasAnExample) {
-  for (const char* command : {"", "run", "inspect", "batch", "contours", "info", "recipe", "recipe check",
-                              "recipe print", "recipe new", "calibrate", "calibrate edge", "demo"}) {
-  for (const char* command : {"", "run", "inspect", "batch", "map", "contours", "info", "recipe",
-                              "recipe check", "recipe print", "recipe new", "demo"}) {
+  for (const char* command :
+       {"", "run", "inspect", "batch", "map", "contours", "info", "recipe", "recipe check", "recipe print",
+        "recipe new", "calibrate", "calibrate edge", "demo"}) {
     const Ran ran = run_arris(std::string(command) + " --help");
     EXPECT_EQ(ran.code, 0) << command;
     EXPECT_NE(ran.out.find("Example:\n  arris " + std::string(command)), std::string::npos) << ran.out;
