@@ -95,13 +95,21 @@ RowError Truth::row(const Foot& foot, bool deformed, const Eigen::Vector3d& p_mm
   const Eigen::Vector3d across =
       deformed ? between(a.true_void, b.true_void) : between(a.nominal_void, b.nominal_void);
   return {arc_mm(foot), foot.offset_mm.norm(), foot.offset_mm.dot(normal), foot.offset_mm.dot(across),
-          p_mm - foot.offset_mm};
+          p_mm - foot.offset_mm, normal, across};
 }
 
 std::vector<RowError> Truth::rows(std::span<const Eigen::Vector3d> carried_mm, bool deformed) const {
   std::vector<RowError> rows;
   for (const Eigen::Vector3d& p : carried_mm) rows.push_back(row(nearest(deformed, p), deformed, p));
   return rows;
+}
+
+double Truth::slid_mm(const Foot& own, const RowError& carried) const {
+  return std::remainder(carried.arc_mm - arc_mm(own), loops_[own.loop].range.length_mm);
+}
+
+double Truth::slid_mm(const Eigen::Vector3d& nominal_mm, const RowError& carried) const {
+  return slid_mm(nearest(false, nominal_mm), carried);
 }
 
 PathError Truth::error(std::span<const Eigen::Vector3d> nominal_mm,
@@ -115,8 +123,7 @@ PathError Truth::error(std::span<const Eigen::Vector3d> nominal_mm,
     error.max_mm = std::max(error.max_mm, found.distance_mm);
     error.normal_mm += share * std::abs(found.normal_mm);
     error.across_mm += share * std::abs(found.across_mm);
-    const double slid_mm = found.arc_mm - arc_mm(own);
-    error.along_mm += share * std::abs(std::remainder(slid_mm, loops_[own.loop].range.length_mm));
+    error.along_mm += share * std::abs(slid_mm(own, found));
   }
   return error;
 }

@@ -24,6 +24,7 @@ struct RowError {
   double normal_mm = 0.0;  ///< signed, positive out of the material
   double across_mm = 0.0;  ///< signed, in the surface, positive towards the void
   Eigen::Vector3d foot_mm = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ(), into_void = Eigen::Vector3d::UnitX();  ///< there
 };
 
 /// The true edge of one part, all contours that the tool follows, CAD frame: what the fixture's elements say,
@@ -38,6 +39,8 @@ class Truth {
                                 std::span<const Eigen::Vector3d> carried_mm) const;
   /// Each carried row against the nearest true edge (deformed), or the drawing's (not deformed).
   [[nodiscard]] std::vector<RowError> rows(std::span<const Eigen::Vector3d> carried_mm, bool deformed) const;
+  /// How far a carried row slid along the edge from its own material point; signed, mm.
+  [[nodiscard]] double slid_mm(const Eigen::Vector3d& nominal_mm, const RowError& carried) const;
   /// Whether a point of the drawing lies within reach_mm of the nominal edge.
   [[nodiscard]] bool near_nominal(const Eigen::Vector3d& p_cad_mm, double reach_mm) const;
   [[nodiscard]] const std::vector<synthetic::EdgePoint>& edge() const { return edge_; }
@@ -57,6 +60,7 @@ class Truth {
   };
   [[nodiscard]] Foot nearest(bool deformed, const Eigen::Vector3d& p_mm) const;
   [[nodiscard]] Foot nearest(std::size_t loop, bool deformed, const Eigen::Vector3d& p_mm) const;
+  [[nodiscard]] double slid_mm(const Foot& own, const RowError& carried) const;
   [[nodiscard]] double arc_mm(const Foot& foot) const;
   [[nodiscard]] RowError row(const Foot& foot, bool deformed, const Eigen::Vector3d& p_mm) const;
 

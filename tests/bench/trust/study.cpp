@@ -1,0 +1,137 @@
+#include "tests/bench/trust/study.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "acquisition/clean.hpp"
+#include "cli/prepare.hpp"
+#include "cli/recipe_options.hpp"
+#include "registration/registration.hpp"
+
+namespace arris::bench {
+namespace {
+
+constexpr double kSpacingMm = 0.5, kPathStepMm = 2.0,
+                 kCadEdgeMm = 4.0;  // coarser, the arcs of small corners fold triangles
+constexpr double kPoseTurnRad = 0.09, kPoseShiftMm = 10.0;
+
+synthetic::ScanOptions scan_options(const StudyPart& study, StudyCase study_case) {
+  synthetic::ScanOptions options;
+  const synthetic::Part& part = *study.part;
+  options.points = std::llround(part.band_area_mm2(0, part.band_mm()) / (kSpacingMm * kSpacingMm));
+  options.noise_length_mm = study.noise_length_mm;
+  if (study_case == StudyCase::kTenMissing) options.missing_ratio = 0.1;
+  if (study_case == StudyCase::kTwentyMissing) options.missing_ratio = 0.2;
+  if (study_case == StudyCase::kStrays) {
+    options.stray_ratio = 0.3;
+    options.stray_reach_mm = 30.0;
+  }
+  if (study_case == StudyCase::kBurrs) options.burr_ratio = 0.1;
+  return options;
+}
+
+/// The pose as a cell knows it: a half-turned hole looks the same, and finding poses is another study's
+/// matter.
+RigidMotion near_pose(const RigidMotion& local_from_cad, const CadModel& cad, std::uint64_t seed) {
+  synthetic::Random random(seed + 500000);
+  const Eigen::Vector3d about_mm = cad.contours[0].point_mm(0.0);
+  const Eigen::AngleAxisd turn(random.uniform(0.0, kPoseTurnRad), random.direction());
+  const Eigen::Vector3d shift_mm = random.uniform(0.0, kPoseShiftMm) * random.direction();
+  return local_from_cad *
+         (Eigen::Translation3d(about_mm + shift_mm) * turn * Eigen::Translation3d(-about_mm));
+}
+
+CadModel drawing_of(const synthetic::Part& part) {
+  std::vector<Contour> others;
+  for (int c = 1; c < part.contour_count(); ++c) others.push_back(part.nominal_contour(c, 1.0));
+  return prepare_cad(part.cad_mesh(kCadEdgeMm), {part.nominal_contour(0, 1.0)}, others);
+}
+
+std::vector<Eigen::Vector3d> path_on(const Curve& contour) {
+  std::vector<Eigen::Vector3d> path_mm;
+  for (double s_mm = 0.0; s_mm < contour.length_mm(); s_mm += kPathStepMm)
+    path_mm.push_back(contour.point_mm(s_mm));
+  return path_mm;
+}
+
+double distance_mm(const StatedError& row) {
+  return std::hypot(row.error[StatedError::kNormal], row.error[StatedError::kAcross]);
+}
+
+void sum_up(StudyOutcome& outcome) {
+  double sum2 = 0.0, gap_sum2 = 0.0, gap_count = 1e-9;
+  std::vector<double> turns_rad;
+  for (const StatedError& row : outcome.rows) {
+    const double off_mm = distance_mm(row);
+    sum2 += off_mm * off_mm;
+    outcome.max_mm = std::max(outcome.max_mm, off_mm);
+    turns_rad.push_back(row.turn_rad);
+    if (!row.in_gap) continue;
+    gap_sum2 += off_mm * off_mm;
+    gap_count += 1.0;
+    outcome.gap_max_mm = std::max(outcome.gap_max_mm, off_mm);
+  }
+  outcome.rms_mm = std::sqrt(sum2 / static_cast<double>(outcome.rows.size()));
+  outcome.gap_rms_mm = std::sqrt(gap_sum2 / gap_count);
+  const auto p95 = turns_rad.begin() + static_cast<std::ptrdiff_t>(turns_rad.size() * 95 / 100);
+  std::nth_element(turns_rad.begin(), p95, turns_rad.end());
+  outcome.normal_p95_deg = *p95 * 180.0 / std::numbers::pi;
+}
+
+}  // namespace
+
+std::string name_of(StudyCase study_case) {
+  switch (study_case) {
+    case StudyCase::kComplete:
+      return "complete";
+    case StudyCase::kTenMissing:
+      return "10 % of contour and band missing";
+    case StudyCase::kTwentyMissing:
+      return "20 % missing";
+    case StudyCase::kStrays:
+      return "30 % strays within 30 mm of the edge";
+    case StudyCase::kBurrs:
+      return "burrs of 0.5 to 3 mm on 10 % of the edge";
+  }
+  return {};
+}
+
+StudyOutcome study_scan(const StudyPart& study, StudyCase study_case, std::uint64_t seed, int threads) {
+  StudyOutcome outcome;
+  outcome.seed = seed;
+  outcome.kind = study.kind;
+  const synthetic::SyntheticScan scan = sample_scan(*study.part, scan_options(study, study_case), seed);
+  const Truth truth(*study.part);
+  const CadModel cad = drawing_of(*study.part);
+  const std::vector<Eigen::Vector3d> path_mm = path_on(cad.contours[0]);
+  Recipe recipe;  // what the program does when a recipe names none of registration's options
+  recipe.part.thickness_mm = study.part->thickness_mm();
+  Scan measured;
+  measured.cloud = clean(scan.cloud(), clean_options(recipe, threads)).cloud;
+  const RigidMotion cad_from_local =
+      scan.scan_from_cad.inverse() * Eigen::Translation3d(measured.cloud.offset_mm);
+  PrepareOptions prepare;
+  prepare.contour = contour_options(recipe, threads);
+  prepare.threads = threads;
+  PreparedScan prepared = prepare_scan(measured, prepare);
+  RegistrationOptions options = registration_options(recipe, threads);
+  options.coarse.initial_scan_from_cad = near_pose(cad_from_local.inverse(), cad, seed);
+  const Registration found = register_part(cad, prepared.model, options);
+  outcome.refusals = found.refusals;
+  outcome.has_path = found.usable();
+  if (found.usable()) {
+    outcome.rows = stated_errors(truth, cad, *found.field, scan, cad_from_local, path_mm);
+    sum_up(outcome);
+  }
+  if (study_case != StudyCase::kTenMissing) return outcome;
+  options.method = RegistrationMethod::kSubdivision;
+  const Registration baseline = register_part(cad, prepared.model, options);
+  if (!baseline.usable()) return outcome;
+  for (const StatedError& row : stated_errors(truth, cad, *baseline.field, scan, cad_from_local, path_mm))
+    if (row.in_gap)
+      outcome.subdivision_gap_max_mm = std::max(outcome.subdivision_gap_max_mm, distance_mm(row));
+  return outcome;
+}
+
+}  // namespace arris::bench
