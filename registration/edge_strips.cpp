@@ -15,6 +15,8 @@ constexpr double kClaimTaus = 3.0;  // farther inside a point pulls nothing, far
 constexpr double kNearRatio = 0.2, kStrayHeightMm = 2.0;  // flyers of an edge stand above and below it
 constexpr double kUnseenStrays = 0.5;                     // none seen is no proof that there are none
 constexpr double kMostStrayRatio = 0.05;                  // early rounds leave material beyond the edge
+constexpr double kBurrTaus = 4.0, kBurrSpacings = 0.3;    // nearer to the edge a point may well be of it
+constexpr double kHighestBurrMm = 4.0, kBurrGates = 1.5;
 constexpr std::size_t kChunk = 256;
 
 }  // namespace
@@ -88,7 +90,29 @@ void EdgeStrips::set_row(const Point& point, SurfaceSystem::Row& row) const {
 
 bool EdgeStrips::counts(std::size_t i) const {
   const Point& p = points_[i];
-  return p.weight > 0.0 && edges_[p.edge].bins.seen_at(p.foot.arc_mm);
+  const Edge& edge = edges_[p.edge];
+  return p.weight > 0.0 && edge.bins.seen_at(p.foot.arc_mm) && !edge.burrs.at(p.foot.arc_mm);
+}
+
+bool EdgeStrips::call_burrs(const std::vector<double>& offset_mm, double tau_mm) {
+  const double margin_mm = std::max(kBurrTaus * tau_mm, kBurrSpacings * spacing_mm_);
+  std::vector<std::vector<double>> standing_out_mm(edges_.size());
+  for (const Point& p : points_) {
+    if (p.foot.distance_mm > kHighestBurrMm) continue;
+    const double inside_mm = p.foot.across_mm - offset_mm[p.edge];
+    const bool beyond = inside_mm < -margin_mm;
+    const bool above = inside_mm < margin_mm && p.foot.height_mm > kBurrGates * gate_mm_;
+    if (beyond || above) standing_out_mm[p.edge].push_back(p.foot.arc_mm);
+  }
+  bool changed = false;
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    Edge& edge = edges_[e];
+    BurrBins found = find_burr_bins(standing_out_mm[e], edge.curve->length_mm(), edge.bins.density_per_mm2);
+    const bool any = found.length_mm() > 0.0 || edge.burrs.length_mm() > 0.0;
+    changed = changed || (any && found.burr != edge.burrs.burr);
+    edge.burrs = std::move(found);
+  }
+  return changed;
 }
 
 /// Of the edge as the scanner shows it.

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "registration/burr_bins.hpp"
 #include "registration/carried_contour.hpp"
 #include "registration/edge_claims.hpp"
 #include "registration/seen_bins.hpp"
@@ -50,6 +51,9 @@ class EdgeStrips {
   /// From now on this pair pulls no edge outward.
   void call_stray(std::size_t pair) { stray_[pair] = 1; }
 
+  /// Looks for burrs, which tell nothing of where the edge is; true: other places than before.
+  bool call_burrs(const std::vector<double>& offset_mm, double tau_mm);
+
   [[nodiscard]] std::size_t size() const { return edges_.size(); }
   [[nodiscard]] const std::vector<ContourStation>& stations(std::size_t edge) const {
     return edges_[edge].stations;
@@ -66,6 +70,7 @@ class EdgeStrips {
     std::vector<ContourStation> stations;
     std::vector<Eigen::Vector3d> inward;  // deformed, one a station
     SeenBins bins;
+    BurrBins burrs;
   };
   void find_seen(std::size_t e);
   [[nodiscard]] double void_mm2(double from_mm, double to_mm) const;

@@ -17,7 +17,7 @@ constexpr double kAnneal = 0.6, kScaleSigmas = 4.0, kGateSigmas = 4.0;
 constexpr double kStartTauMm = 2.0, kTauShrink = 0.6;
 constexpr double kFollowedTaus = 0.3;  // a round that moves the edge by more has not followed it yet
 constexpr int kMostHeld = 8;           // rounds at one tau
-constexpr int kStrayPasses = 5;
+constexpr int kStrayPasses = 5, kBurrPasses = 4;
 constexpr double kClaimsNearMm = 150.0;  // strays that hold one place of an edge together
 constexpr double kFineCellRatio = 0.4,
                  kCellRatio = 0.6;  // of the node spacing: to place nodes; of the priors
@@ -73,6 +73,11 @@ class SurfaceFitter {
     tau_mm_ = std::max(kStartTauMm, 0.5 * scan_.spacing_mm);
     for (std::size_t one_of : levels()) {
       take_points(one_of);
+      if (fit_.rounds > 0) (void)call_burrs();  // before so many points pull the edge to them
+      settle();
+      if (!fit_.usable()) return std::move(fit_);
+    }
+    for (int pass = 0; pass < kBurrPasses && call_burrs(); ++pass) {
       settle();
       if (!fit_.usable()) return std::move(fit_);
     }
@@ -134,6 +139,12 @@ class SurfaceFitter {
       held = 0;
       tau_mm_ = std::max(finest_tau_mm, kTauShrink * tau_mm_);
     }
+  }
+
+  /// Looks for burrs from the field as it stands; true: other places than before.
+  bool call_burrs() {
+    look();
+    return strips_->call_burrs(fit_.offset_mm, strips_->finest_tau_mm(options_.edge_share_ratio));
   }
 
   /// Covariance of the field as it stands, and of what it may owe to strays; true: some were, and are let go.
