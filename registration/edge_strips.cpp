@@ -99,9 +99,9 @@ bool EdgeStrips::call_burrs(const std::vector<double>& offset_mm, double tau_mm)
   std::vector<std::vector<double>> standing_out_mm(edges_.size());
   for (const Point& p : points_) {
     if (p.foot.distance_mm > kHighestBurrMm) continue;
-    const double inside_mm = p.foot.across_mm - offset_mm[p.edge];
-    const bool beyond = inside_mm < -margin_mm;
-    const bool above = inside_mm < margin_mm && p.foot.height_mm > kBurrGates * gate_mm_;
+    const double inside = inside_mm(p, offset_mm);
+    const bool beyond = inside < -margin_mm;
+    const bool above = inside < margin_mm && p.foot.height_mm > kBurrGates * gate_mm_;
     if (beyond || above) standing_out_mm[p.edge].push_back(p.foot.arc_mm);
   }
   bool changed = false;

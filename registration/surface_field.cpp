@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "registration/carried_contour.hpp"
 
@@ -50,6 +51,10 @@ MappedPoint SurfaceField::map(const Eigen::Vector3d& p_cad_mm) const {
                   sd_along_mm(row, turn * tangent, -1)};
   if (follow) mapped.sd_mm.y() = std::hypot(mapped.sd_mm.y(), fit_.scanner_sd_mm);
   mapped.sd_axis_rad = sd_tilt_rad(row, turn * inward, shape.normal);
+  const double more_mm2 = unfollowed_mm2(row), wave_mm = 2.0 * fit_.basis->spacing_mm();
+  mapped.sd_mm.x() = std::hypot(mapped.sd_mm.x(), std::sqrt(more_mm2));
+  mapped.sd_axis_rad = std::hypot(
+      mapped.sd_axis_rad, 2.0 * std::numbers::pi / wave_mm * std::sqrt(more_mm2 + fit_.unfollowed_mean_mm2));
   mapped.from_data = seen_.empty() || seen_[static_cast<std::size_t>(contour)].at(beside.arc_mm);
   mapped.in_domain = true;
   return mapped;
@@ -79,6 +84,13 @@ double SurfaceField::sd_tilt_rad(const BasisRow& row, const Eigen::Vector3d& inw
   for (BasisRow::Weights& w : slope.weight)
     w[BasisRow::kValue] = along1 * w[BasisRow::kD1] + along2 * w[BasisRow::kD2];
   return sd_along_mm(slope, normal, -1);
+}
+
+double SurfaceField::unfollowed_mm2(const BasisRow& row) const {
+  double sum_mm2 = 0.0;
+  for (std::size_t k = 0; k < row.node.size() && !fit_.unfollowed_mm2.empty(); ++k)
+    sum_mm2 += row.weight[k][BasisRow::kValue] * fit_.unfollowed_mm2[static_cast<std::size_t>(row.node[k])];
+  return std::max(0.0, sum_mm2);
 }
 
 Eigen::Matrix3d SurfaceField::slide_covariance_mm2(std::size_t contour) const {

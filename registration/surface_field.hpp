@@ -40,6 +40,8 @@ class SurfaceField final : public DeformationField {
 
  private:
   [[nodiscard]] double sd_along_mm(const BasisRow& row, const Eigen::Vector3d& direction, int offset) const;
+  /// Beyond the covariance: height that the nodes about this place do not follow; mm^2.
+  [[nodiscard]] double unfollowed_mm2(const BasisRow& row) const;
   [[nodiscard]] double sd_tilt_rad(const BasisRow& row, const Eigen::Vector3d& inward,
                                    const Eigen::Vector3d& normal) const;
 

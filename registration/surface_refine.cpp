@@ -7,6 +7,7 @@
 
 #include "acquisition/geometry/parallel_for.hpp"
 #include "acquisition/types/error.hpp"
+#include "registration/common_height.hpp"
 #include "registration/edge_strips.hpp"
 #include "registration/surface_pairs.hpp"
 
@@ -28,6 +29,8 @@ constexpr double kProximalMm = 5.0;     // a round's moves along such motions st
 constexpr double kLeastSigmaMm = 0.02;  // the drawing's own facets
 constexpr double kSettledMm = 1e-3, kSettledEdgeLimits = 0.01;  // moves of a round that no longer matter
 constexpr double kUnfollowedMm = 0.008;  // height of a bent surface that nodes 30 mm apart do not follow
+constexpr double kFinerFactor = 1.5, kShapeCellRatio = 0.67;               // of the node spacing
+constexpr double kWorthMm = 0.004, kWorthSigmas = 1.0, kWorthRatio = 0.5;  // of a shape left, to follow it
 constexpr double kUnknownThicknessWiden = 2.0;  // the mid-surface's strain is then not known
 constexpr std::size_t kParts = 2;               // chunks of a list: each needs a system of its own
 
@@ -55,8 +58,7 @@ class SurfaceFitter {
     if (prior_.thickness_mm <= 0.0) prior_.strain_ratio *= kUnknownThicknessWiden;
     for (const Curve& curve : options.role == ContourRole::kEdge ? cad.contours : cad.others)
       edges_.push_back(&curve);
-    make_basis();
-    for (const Curve& curve : cad.contours) followed_.push_back(contour_stations(curve, *fit_.basis, 5.0));
+    make_basis(options.node_spacing_mm);
     fit_.shift_mm.assign(fit_.basis->size(), Eigen::Vector3d::Zero());
     fit_.offset_mm.assign(edges_.size(), 0.0);
     const double reach_mm = options.band_mm + options.start_scale_mm + 3.0 * scan.spacing_mm;
@@ -81,7 +83,8 @@ class SurfaceFitter {
       settle();
       if (!fit_.usable()) return std::move(fit_);
     }
-    for (int pass = 1; pass < kStrayPasses && call_strays(); ++pass) {
+    choose_nodes();
+    for (int pass = 1; fit_.usable() && pass < kStrayPasses && call_strays(); ++pass) {
       settle();
       if (!fit_.usable()) break;
     }
@@ -168,8 +171,7 @@ class SurfaceFitter {
     return !verdict.strays.empty();
   }
 
-  void make_basis() {
-    double spacing_mm = options_.node_spacing_mm;
+  void make_basis(double spacing_mm) {
     const double band_mm = options_.role == ContourRole::kCut ? -1.0 : options_.band_mm;
     std::vector<SurfaceCell> cells = band_cells(cad_, band_mm, kFineCellRatio * spacing_mm);
     spacing_mm = std::max(spacing_mm, std::sqrt(area_mm2_of(cells) / static_cast<double>(kMostNodes)));
@@ -183,6 +185,61 @@ class SurfaceFitter {
       if (sheet.usable()) sheet_.push_back(std::move(sheet));
     }
     fit_.basis = std::move(basis);
+    followed_.clear();
+    for (const Curve& curve : cad_.contours) followed_.push_back(contour_stations(curve, *fit_.basis, 5.0));
+  }
+
+  /// The same field on other nodes.
+  void change_basis(double spacing_mm) {
+    const SurfaceFit before = fit_;
+    sheet_.clear();
+    make_basis(spacing_mm);
+    const SurfaceNodes& nodes = fit_.basis->nodes();
+    fit_.shift_mm.clear();
+    for (std::size_t j = 0; j < nodes.points_mm.size(); ++j)
+      fit_.shift_mm.push_back(
+          before.basis->row(nodes.points_mm[j], nodes.normals[j]).combine(BasisRow::kValue, before.shift_mm));
+    take_points(1);
+    (void)call_burrs();
+  }
+
+  /// Height of the shape that the nodes do not follow. Noise that is alike for neighbours falls with the area
+  /// it is averaged over, a shape does not.
+  [[nodiscard]] double shape_left_mm(double cell_mm) const {
+    const double gate_mm = kGateSigmas * fit_.sigma_mm;
+    const double wide_mm2 = CommonHeight(pairs_, cell_mm, gate_mm).mean_mm2(),
+                 narrow_mm2 = CommonHeight(pairs_, 0.5 * cell_mm, gate_mm).mean_mm2();
+    return std::sqrt(std::max(0.0, (4.0 * wide_mm2 - narrow_mm2) / 3.0));
+  }
+
+  /// Nodes closer together, as long as that follows a shape that was left.
+  void choose_nodes() {
+    for (;;) {
+      const double spacing_mm = fit_.basis->spacing_mm(), cell_mm = kShapeCellRatio * spacing_mm;
+      const double left_mm = shape_left_mm(cell_mm);
+      const auto nodes = static_cast<double>(fit_.basis->size()), pairs = static_cast<double>(fit_.pairs);
+      const double finer_nodes = kFinerFactor * kFinerFactor * nodes;
+      if (left_mm < std::max(kWorthMm, kWorthSigmas * fit_.sigma_mm * std::sqrt(nodes / pairs)) ||
+          finer_nodes > kMostNodes || pairs < kFewestPointsANode * finer_nodes)
+        break;
+      const SurfaceFit before = fit_;
+      change_basis(spacing_mm / kFinerFactor);
+      settle();
+      if (!fit_.usable()) return;
+      if (shape_left_mm(cell_mm) < kWorthRatio * left_mm) continue;
+      change_basis(spacing_mm);
+      fit_.shift_mm = before.shift_mm;
+      fit_.offset_mm = before.offset_mm;
+      settle();
+      break;
+    }
+    const double spacing_mm = fit_.basis->spacing_mm();
+    const CommonHeight common(pairs_, 0.5 * spacing_mm, kGateSigmas * fit_.sigma_mm);
+    unfollowed_mm_ = std::max(std::sqrt(common.mean_mm2()),
+                              kUnfollowedMm * std::pow(spacing_mm / options_.node_spacing_mm, 2));
+    fit_.unfollowed_mm2 = common.excess_mm2(fit_.shift_mm.size(), unfollowed_mm_ * unfollowed_mm_);
+    fit_.unfollowed_mean_mm2 = unfollowed_mm_ * unfollowed_mm_;
+    settle();
   }
 
   /// Partners, residuals and strips under the field as it is.
@@ -214,7 +271,7 @@ class SurfaceFitter {
   /// noise alone, many points trade it for a slide in the surface, where only the edge holds the field.
   double point_sigma_mm() const {
     const double points_a_node = static_cast<double>(fit_.pairs) / static_cast<double>(fit_.basis->size());
-    return std::hypot(fit_.sigma_mm, kUnfollowedMm * std::sqrt(points_a_node));
+    return std::hypot(fit_.sigma_mm, unfollowed_mm_ * std::sqrt(points_a_node));
   }
 
   SurfaceSystem assemble() const {
@@ -290,6 +347,7 @@ class SurfaceFitter {
   std::vector<std::vector<ContourStation>> followed_;
   std::vector<std::size_t> near_, points_;  // scan points near the contours, and those that take part
   std::vector<SurfacePair> pairs_;
+  double unfollowed_mm_ = kUnfollowedMm;
   double scale_mm_ = 10.0, tau_mm_ = kStartTauMm, strip_reach_mm_ = 20.0;
 };
 

@@ -44,7 +44,11 @@ struct SurfaceFit {
   std::vector<double> offset_mm;          ///< one an edge used: it lies this far inside the material
   Eigen::MatrixXd covariance;             ///< of the node shifts (3 each), then the offsets; mm^2
   double scanner_sd_mm = 0.0;             ///< of the scanner's edge; not in the covariance
-  double sigma_mm = 0.0;                  ///< robust residual normal to the surface
+  /// Mean square of the height that neighbouring points share beyond the field (in the covariance), and how
+  /// much more of it there is about each node.
+  double unfollowed_mean_mm2 = 0.0;
+  std::vector<double> unfollowed_mm2;
+  double sigma_mm = 0.0;  ///< robust residual normal to the surface
   std::size_t pairs = 0;
   int rounds = 0;
   std::string stop;    ///< "converged", "round limit"

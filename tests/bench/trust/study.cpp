@@ -116,6 +116,7 @@ StudyOutcome study_scan(const StudyPart& study, StudyCase study_case, std::uint6
   prepare.threads = threads;
   PreparedScan prepared = prepare_scan(measured, prepare);
   RegistrationOptions options = registration_options(recipe, threads);
+  options.edge.scanner = options.surface.scanner = {0.0, 0.0};  // the synthetic scanner is calibrated
   options.coarse.initial_scan_from_cad = near_pose(cad_from_local.inverse(), cad, seed);
   const Registration found = register_part(cad, prepared.model, options);
   outcome.refusals = found.refusals;
