@@ -88,6 +88,19 @@ void EdgeStrips::set_row(const Point& point, SurfaceSystem::Row& row) const {
     row.direction.push_back(-w[BasisRow::kValue] * edge.inward[point.foot.station]);
 }
 
+/// An edge that so many more points show is known that much better.
+std::vector<EdgeSupport> EdgeStrips::supports_at(double tau_mm, double stray_ratio) const {
+  if (edges_.empty()) return {};
+  std::vector<double> points_per_mm;
+  for (const Edge& edge : edges_)
+    points_per_mm.push_back(std::max(1e-9, edge.bins.density_per_mm2 * edge.curve->length_mm()));
+  const double fewest = *std::min_element(points_per_mm.begin(), points_per_mm.end());
+  std::vector<EdgeSupport> supports;
+  for (const double points : points_per_mm)
+    supports.push_back({std::max(kTauFloorMm, tau_mm * fewest / points), strip_mm_, stray_ratio});
+  return supports;
+}
+
 bool EdgeStrips::counts(std::size_t i) const {
   const Point& p = points_[i];
   const Edge& edge = edges_[p.edge];
@@ -122,13 +135,14 @@ double EdgeStrips::inside_mm(const Point& point, const std::vector<double>& offs
 
 void EdgeStrips::add(std::size_t begin, std::size_t end, const std::vector<double>& offset_mm, double tau_mm,
                      double stray_ratio, SurfaceSystem& system) const {
-  const EdgeSupport support{tau_mm, strip_mm_, stray_ratio};
+  const std::vector<EdgeSupport> supports = supports_at(tau_mm, stray_ratio);
   SurfaceSystem::Row row;
   for (std::size_t i = begin; i < end; ++i) {
     const Point& p = points_[i];
     if (!counts(i)) continue;
     const double inside = inside_mm(p, offset_mm);
     if (stray_[i]) continue;
+    const EdgeSupport& support = supports[p.edge];
     const EdgeSupport::Pull pull = support.at(inside);
     if (pull.slope_per_mm == 0.0 && pull.curvature_per_mm2 == 0.0) continue;
     set_row(p, row);
@@ -139,7 +153,7 @@ void EdgeStrips::add(std::size_t begin, std::size_t end, const std::vector<doubl
 double EdgeStrips::resistance(const SurfaceSystem& system, const Eigen::VectorXd& move,
                               const std::vector<double>& offset_mm, double tau_mm, double stray_ratio,
                               std::span<const std::size_t> without_pairs) const {
-  const EdgeSupport support{tau_mm, strip_mm_, stray_ratio};
+  const std::vector<EdgeSupport> supports = supports_at(tau_mm, stray_ratio);
   SurfaceSystem::Row row;
   double sum = 0.0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -150,6 +164,7 @@ double EdgeStrips::resistance(const SurfaceSystem& system, const Eigen::VectorXd
     set_row(p, row);
     const double by_mm = system.dot(row, move);
     const double inside = inside_mm(p, offset_mm);
+    const EdgeSupport& support = supports[p.edge];
     const EdgeSupport::Pull pull = support.at(inside);
     sum += p.weight * (support.whole_cost(inside + by_mm) - support.whole_cost(inside) -
                        pull.slope_per_mm * by_mm - 0.5 * pull.curvature_per_mm2 * by_mm * by_mm);
@@ -194,14 +209,15 @@ double EdgeStrips::stray_ratio() const {
 
 std::vector<EdgeClaim> EdgeStrips::claims(const std::vector<double>& offset_mm, double tau_mm,
                                           double stray_ratio) const {
-  const EdgeSupport support{tau_mm, strip_mm_, stray_ratio};
+  const std::vector<EdgeSupport> supports = supports_at(tau_mm, stray_ratio);
   std::vector<EdgeClaim> found;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Point& p = points_[i];
     if (!counts(i) || stray_[i]) continue;
     const double inside = inside_mm(p, offset_mm);
+    const EdgeSupport& support = supports[p.edge];
     const EdgeSupport::Pull pull = support.at(inside);
-    if (std::abs(inside) > kClaimTaus * tau_mm || pull.slope_per_mm >= 0.0) continue;
+    if (std::abs(inside) > kClaimTaus * support.tau_mm || pull.slope_per_mm >= 0.0) continue;
     EdgeClaim claim;
     claim.pair = i;
     claim.arc_mm = p.foot.arc_mm;

@@ -7,6 +7,7 @@
 #include "registration/burr_bins.hpp"
 #include "registration/carried_contour.hpp"
 #include "registration/edge_claims.hpp"
+#include "registration/edge_support.hpp"
 #include "registration/seen_bins.hpp"
 #include "registration/surface_pairs.hpp"
 
@@ -73,6 +74,8 @@ class EdgeStrips {
     BurrBins burrs;
   };
   void find_seen(std::size_t e);
+  /// Of each edge, when that with the fewest points is looked at with tau_mm.
+  [[nodiscard]] std::vector<EdgeSupport> supports_at(double tau_mm, double stray_ratio) const;
   [[nodiscard]] double void_mm2(double from_mm, double to_mm) const;
   [[nodiscard]] std::size_t points_in_void(double from_mm, double to_mm, double height_mm) const;
   [[nodiscard]] bool counts(std::size_t point) const;

@@ -31,6 +31,8 @@ constexpr double kSettledMm = 1e-3, kSettledEdgeLimits = 0.01;  // moves of a ro
 constexpr double kUnfollowedMm = 0.008;  // height of a bent surface that nodes 30 mm apart do not follow
 constexpr double kFinerFactor = 1.5, kShapeCellRatio = 0.67;               // of the node spacing
 constexpr double kWorthMm = 0.004, kWorthSigmas = 1.0, kWorthRatio = 0.5;  // of a shape left, to follow it
+constexpr double kStiffStrainRatio = 1e-5, kStiffBendPerMm = 1e-6;  // of a part that stays as it is drawn
+constexpr double kRigidMm = 0.015, kRigidSigmas = 0.3, kMostRigidSigmas = 1.3;
 constexpr double kUnknownThicknessWiden = 2.0;  // the mid-surface's strain is then not known
 constexpr std::size_t kParts = 2;               // chunks of a list: each needs a system of its own
 
@@ -73,7 +75,10 @@ class SurfaceFitter {
     }
     scale_mm_ = options_.start_scale_mm;
     tau_mm_ = std::max(kStartTauMm, 0.5 * scan_.spacing_mm);
-    for (std::size_t one_of : levels()) {
+    const std::vector<std::size_t> one_of_each = levels();
+    take_points(one_of_each.front());
+    stay_rigid_if_so();
+    for (const std::size_t one_of : one_of_each) {
       take_points(one_of);
       if (fit_.rounds > 0) (void)call_burrs();  // before so many points pull the edge to them
       settle();
@@ -92,6 +97,29 @@ class SurfaceFitter {
   }
 
  private:
+  /// A part that hardly bends is not allowed to: a soft field would let its contours wander apart, each by
+  /// what its own edge shows. Tried when the rigid motion leaves little; undone when neighbours still share
+  /// more height than kRigidMm and the noise hide.
+  void stay_rigid_if_so() {
+    look();
+    const double hidden_mm = std::max(kRigidMm, kRigidSigmas * scan_.noise_sigma_mm);
+    if (fit_.sigma_mm > std::hypot(kMostRigidSigmas * scan_.noise_sigma_mm, hidden_mm)) return;
+    const SheetPrior soft = prior_;
+    prior_.strain_ratio = std::min(kStiffStrainRatio, soft.strain_ratio);
+    prior_.bend_per_mm = std::min(kStiffBendPerMm, soft.bend_per_mm);
+    settle();
+    look();
+    const CommonHeight common(pairs_, fit_.basis->spacing_mm(), kGateSigmas * fit_.sigma_mm);
+    if (fit_.usable() && common.mean_mm2() < hidden_mm * hidden_mm) return;
+    prior_ = soft;
+    fit_.reason.clear();
+    fit_.shift_mm.assign(fit_.basis->size(), Eigen::Vector3d::Zero());
+    fit_.offset_mm.assign(edges_.size(), 0.0);
+    scale_mm_ = options_.start_scale_mm;
+    tau_mm_ = std::max(kStartTauMm, 0.5 * scan_.spacing_mm);
+    fit_.rounds = 0;
+  }
+
   /// A dense scan is fitted by few of its points first: one of 16, of 4, of 1, as long as the nodes see
   /// enough.
   [[nodiscard]] std::vector<std::size_t> levels() const {
@@ -239,6 +267,8 @@ class SurfaceFitter {
                               kUnfollowedMm * std::pow(spacing_mm / options_.node_spacing_mm, 2));
     fit_.unfollowed_mm2 = common.excess_mm2(fit_.shift_mm.size(), unfollowed_mm_ * unfollowed_mm_);
     fit_.unfollowed_mean_mm2 = unfollowed_mm_ * unfollowed_mm_;
+    if (prior_.bend_per_mm < options_.prior.bend_per_mm)  // a stiff field's covariance does not know of it
+      fit_.unfollowed_mm2.assign(fit_.shift_mm.size(), fit_.unfollowed_mean_mm2);
     settle();
   }
 

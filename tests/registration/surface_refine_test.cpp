@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "acquisition/types/error.hpp"
 #include "registration/surface_field.hpp"
@@ -131,6 +132,49 @@ TEST(SurfaceField, TheOrderOfTheScanPointsDoesNotMatterThoughADenseScanBeginsWit
     const Eigen::Vector3d p = cad.contours[0].point_mm(s_mm);
     EXPECT_LT((other.map(p).p_scan_mm - plain.map(p).p_scan_mm).norm(), 5e-4);
   }
+}
+
+TEST(SurfaceField, IsBlindToBurrs) {
+  const PlatePart part(bent(1e-4));
+  const CadModel cad = scenes::cad_of(part);
+  std::array<double, 2> max_mm{};
+  for (const bool with_burrs : {false, true}) {
+    synthetic::ScanOptions scan;
+    scan.points = 50000;
+    scan.band_mm = 30.0;
+    scan.random_pose = false;
+    scan.burr_ratio = with_burrs ? 0.1 : 0.0;
+    const Trial trial = scenes::trial_of(part, scan, 11);
+    const SurfaceField field = fitted(cad, trial, options_for(part), trial.scan_from_cad);
+    max_mm[with_burrs ? 1 : 0] = error_of(cad, trial, field).max_mm;
+  }
+  EXPECT_LT(max_mm[1], max_mm[0] + 0.05);
+}
+
+TEST(SurfaceField, APlateThatHardlyBendsStaysAsItIsDrawn) {
+  const PlatePart part(bent(2e-6));  // 0.01 mm over 100 mm
+  const CadModel cad = scenes::cad_of(part);
+  const Trial trial = scenes::ideal_trial(part, {}, 12);
+  const SurfaceField field = fitted(cad, trial, options_for(part), RigidMotion::Identity());
+  // Normals of a part that does not bend agree everywhere.
+  const Eigen::Matrix3d first = field.map(cad.contours[0].point_mm(0.0)).rotation_scan_from_cad;
+  for (double s_mm = 0.0; s_mm < cad.contours[0].length_mm(); s_mm += 10.0) {
+    const Eigen::Matrix3d here = field.map(cad.contours[0].point_mm(s_mm)).rotation_scan_from_cad;
+    EXPECT_LT((first.col(2) - here.col(2)).norm(), 2e-4) << s_mm;
+  }
+}
+
+TEST(SurfaceField, NodesMoveCloserForADentThatTheyMissed) {
+  synthetic::PlateShape shape = bent(1e-4);
+  shape.dents.push_back({{115.0, 10.0}, 50.0, 1.2});
+  const PlatePart part(shape);
+  const CadModel cad = scenes::cad_of(part);
+  const Trial trial = scenes::ideal_trial(part, {.points = 40000}, 13);
+  const SurfaceField field = fitted(cad, trial, options_for(part), RigidMotion::Identity());
+  EXPECT_LT(field.fit().basis->spacing_mm(), 25.0);
+  const PlatePart smooth(bent(1e-4));
+  const Trial plain = scenes::ideal_trial(smooth, {.points = 40000}, 13);
+  EXPECT_EQ(fitted(cad, plain, options_for(smooth), RigidMotion::Identity()).fit().basis->spacing_mm(), 30.0);
 }
 
 TEST(SurfaceField, SameBytesForAnyThreadCount) {

@@ -19,7 +19,7 @@ constexpr double kPoseTurnRad = 0.09, kPoseShiftMm = 10.0;
 synthetic::ScanOptions scan_options(const StudyPart& study, StudyCase study_case) {
   synthetic::ScanOptions options;
   const synthetic::Part& part = *study.part;
-  options.points = std::llround(part.band_area_mm2(0, part.band_mm()) / (kSpacingMm * kSpacingMm));
+  options.points = std::llround(part.band_area_mm2(part.band_mm()) / (kSpacingMm * kSpacingMm));
   options.noise_length_mm = study.noise_length_mm;
   if (study_case == StudyCase::kTenMissing) options.missing_ratio = 0.1;
   if (study_case == StudyCase::kTwentyMissing) options.missing_ratio = 0.2;
