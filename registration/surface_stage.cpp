@@ -12,8 +12,11 @@
 namespace arris {
 namespace {
 
-constexpr double kMotionStepMm = 10.0;                // the field along a contour is sampled this finely
-constexpr double kJudgeStepMm = 5.0;                  // and its uncertainty
+constexpr double kMotionStepMm = 10.0;  // the field along a contour is sampled this finely
+constexpr double kJudgeStepMm = 5.0;    // and its uncertainty
+constexpr double kUnfollowedEdgeMm = 0.3,
+                 kUnfollowedEdgeLimits = 2.0;  // rms; right fits leave half an edge limit
+constexpr double kMostOffsetSds = 2.0;
 constexpr double kSlideShare = 0.5;                   // of the worst variance: then the whole contour slides
 constexpr double kNearSpacings = 3.0, kNearMm = 3.0;  // a scan point this near makes a place "data"
 
@@ -112,6 +115,45 @@ void judge_cut(const CadModel& cad, const ScanModel& scan, const std::vector<See
   result.refusals.emplace_back(text);
 }
 
+/// Role edge: an edge that lies elsewhere than where the field carries it, its own offset aside, was not
+/// followed: the rigid start was wrong, or something else than this contour was seen.
+void judge_edges(const CadModel& cad, const SurfaceField& field, const RegistrationOptions& options,
+                 Registration& result) {
+  for (std::size_t c = 0; c < cad.contours.size(); ++c) {
+    const EdgeFit& edge = result.contours[c].edge;
+    const Curve& curve = cad.contours[c];
+    double sum2 = 0.0, count = 1e-9;
+    for (double s_mm = 0.0; s_mm < curve.length_mm(); s_mm += kJudgeStepMm) {
+      if (!edge.seen_at(s_mm)) continue;
+      const double off_mm = edge.spline.at(s_mm).dot(edge.across) - field.fit().offset_mm[c];
+      sum2 += off_mm * off_mm;
+      count += 1.0;
+    }
+    const double rms_mm = std::sqrt(sum2 / count), offset_mm = field.fit().offset_mm[c];
+    const double most_offset_mm = kMostOffsetSds * options.surface.offset_sd_mm + edge.edge_limit_mm();
+    if (std::abs(offset_mm) > most_offset_mm) {
+      char text[240];
+      std::snprintf(text, sizeof text,
+                    "contour %d: its edge lies %.2f mm %s the drawn one all round, at most %.2f: the part is "
+                    "of another "
+                    "size, was placed wrongly, or registration.surface.offset_sd_mm must be larger",
+                    curve.contour().id, std::abs(offset_mm), offset_mm > 0.0 ? "inside" : "outside",
+                    most_offset_mm);
+      result.refusals.emplace_back(text);
+      continue;
+    }
+    const double limit_mm = kUnfollowedEdgeMm + kUnfollowedEdgeLimits * edge.edge_limit_mm();
+    if (rms_mm <= limit_mm) continue;
+    char text[240];
+    std::snprintf(
+        text, sizeof text,
+        "contour %d: the edge in the scan is not explained: %.2f mm rms beside where the field carries "
+        "it, at most %.2f; scan.initial in the recipe helps when the part was placed wrongly",
+        curve.contour().id, rms_mm, limit_mm);
+    result.refusals.emplace_back(text);
+  }
+}
+
 }  // namespace
 
 void deform_by_surface(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options,
@@ -138,6 +180,7 @@ void deform_by_surface(const CadModel& cad, const ScanModel& scan, const Registr
     seen.push_back(seen_along(scan, cad.contours[c], result.contours[c], options.role));
   if (options.role == ContourRole::kCut) judge_cut(cad, scan, seen, field->fit().sigma_mm, options, result);
   field->set_seen(std::move(seen));
+  if (options.role == ContourRole::kEdge) judge_edges(cad, *field, options, result);
   judge_place(cad, *field, options, result);
   result.field = std::move(field);
 }

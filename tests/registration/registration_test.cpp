@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/registration/scenes.hpp"
 
 namespace arris {
@@ -98,6 +100,25 @@ TEST(RegisterPart, JointFitIsNotMadeUnlessAskedForAndHelpsOnTheNoseCone) {
     with += field_error(cad, trial, refined).mean_mm;
   }
   EXPECT_LT(with, 0.8 * without);
+}
+
+TEST(RegisterPart, AHoleOfAnotherSizeIsRefusedAndNamed) {
+  const synthetic::PlateShape drawn = synthetic::plate_with_rounded_rectangle();
+  synthetic::PlateShape moulded = drawn;
+  moulded.holes[0].half_x_mm += 2.5;
+  moulded.holes[0].half_y_mm += 2.5;
+  const synthetic::PlatePart nominal(drawn), part(moulded);
+  const CadModel cad = scenes::cad_of(nominal);
+  Trial trial = scenes::trial_of(part, {}, 3);
+  RegistrationOptions options;
+  options.coarse.initial_scan_from_cad = trial.scan_from_cad;
+  options.mid_depth_mm = 0.5 * drawn.thickness_mm;
+  const Registration found = register_part(cad, trial.scan, options);
+  const auto named = [](const std::string& reason) {
+    return reason.find("of another size") != std::string::npos;
+  };
+  EXPECT_TRUE(std::any_of(found.refusals.begin(), found.refusals.end(), named))
+      << (found.refusals.empty() ? "accepted" : found.refusals.front());
 }
 
 TEST(RegisterPart, MovingTheScanMovesTheAnswerAndNothingElse) {
