@@ -319,8 +319,9 @@ std::vector<Key> surface_keys(Recipe::Surface& s) {
   return {
       {.name = "registration.surface.node_spacing_mm",
        .slot = &s.node_spacing_mm,
-       .about = "distance of the field's nodes at first; closer ones are taken where a dense scan shows a shape "
-                "that they miss",
+       .about =
+           "distance of the field's nodes at first; closer ones are taken where a dense scan shows a shape "
+           "that they miss",
        .min = 1.0,
        .max = 1e4},
       {.name = "registration.surface.strain_ratio",

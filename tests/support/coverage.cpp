@@ -18,8 +18,8 @@ bool in_gap(const synthetic::SyntheticScan& scan, const Eigen::Vector3d& p_cad_m
 
 }  // namespace
 
-std::vector<StatedError> stated_errors(const Truth& truth, const CadModel& cad,
-                                       const DeformationField& field, const synthetic::SyntheticScan& scan,
+std::vector<StatedError> stated_errors(const Truth& truth, const CadModel& cad, const DeformationField& field,
+                                       const synthetic::SyntheticScan& scan,
                                        const RigidMotion& cad_from_local,
                                        const std::vector<Eigen::Vector3d>& nominal_mm) {
   std::vector<StatedError> stated;
@@ -36,8 +36,8 @@ std::vector<StatedError> stated_errors(const Truth& truth, const CadModel& cad,
   }
   const std::vector<RowError> rows = truth.rows(carried_mm, true);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double along_mm = truth.is_circle() ? std::numeric_limits<double>::quiet_NaN()
-                                              : truth.slid_mm(nominal_mm[i], rows[i]);
+    const double along_mm =
+        truth.is_circle() ? std::numeric_limits<double>::quiet_NaN() : truth.slid_mm(nominal_mm[i], rows[i]);
     const double tilt_rad = std::atan2(normals[i].dot(rows[i].into_void), normals[i].dot(rows[i].normal));
     stated[i].error = {rows[i].normal_mm, rows[i].across_mm, along_mm, tilt_rad};
     stated[i].in_gap = in_gap(scan, rows[i].foot_mm);

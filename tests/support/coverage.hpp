@@ -17,12 +17,12 @@ namespace arris::bench {
 struct StatedError {
   enum Direction : std::size_t { kNormal, kAcross, kAlong, kAxis, kDirections };
   std::array<double, kDirections> error{}, sd{};  ///< mm; the axis in rad
-  double turn_rad = 0.0;  ///< of the surface normal, in all
+  double turn_rad = 0.0;                          ///< of the surface normal, in all
   bool in_gap = false;
 };
 
-/// The nominal points (on contour 0) as the field maps them, beside the truth. A row is in a gap where its true
-/// place lies in a missing disc of the scan. cad_from_local undoes the scan's true pose.
+/// The nominal points (on contour 0) as the field maps them, beside the truth. A row is in a gap where its
+/// true place lies in a missing disc of the scan. cad_from_local undoes the scan's true pose.
 [[nodiscard]] std::vector<StatedError> stated_errors(const Truth& truth, const CadModel& cad,
                                                      const DeformationField& field,
                                                      const synthetic::SyntheticScan& scan,

@@ -94,8 +94,13 @@ RowError Truth::row(const Foot& foot, bool deformed, const Eigen::Vector3d& p_mm
       deformed ? between(a.true_normal, b.true_normal) : between(a.nominal_normal, b.nominal_normal);
   const Eigen::Vector3d across =
       deformed ? between(a.true_void, b.true_void) : between(a.nominal_void, b.nominal_void);
-  return {arc_mm(foot), foot.offset_mm.norm(), foot.offset_mm.dot(normal), foot.offset_mm.dot(across),
-          p_mm - foot.offset_mm, normal, across};
+  return {arc_mm(foot),
+          foot.offset_mm.norm(),
+          foot.offset_mm.dot(normal),
+          foot.offset_mm.dot(across),
+          p_mm - foot.offset_mm,
+          normal,
+          across};
 }
 
 std::vector<RowError> Truth::rows(std::span<const Eigen::Vector3d> carried_mm, bool deformed) const {
