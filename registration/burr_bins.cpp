@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "acquisition/geometry/median.hpp"
+#include "registration/arc_bins.hpp"
 
 namespace arris {
 namespace {
@@ -16,9 +17,7 @@ constexpr double kSigmas = 3.0, kFewest = 0.4;  // more than chance leaves in a 
 }  // namespace
 
 bool BurrBins::at(double arc_mm) const {
-  if (burr.empty()) return false;
-  const auto bin = static_cast<std::size_t>(std::max(0.0, arc_mm / bin_mm));
-  return burr[std::min(burr.size() - 1, bin)] != 0;
+  return !burr.empty() && burr[arc_bin(arc_mm, bin_mm, burr.size())] != 0;
 }
 
 double BurrBins::length_mm() const {
@@ -32,8 +31,7 @@ BurrBins find_burr_bins(std::span<const double> standing_out_mm, double length_m
   if (found.bin_mm > kMostBinMm || count < 8) return found;
   found.bin_mm = length_mm / static_cast<double>(count);
   std::vector<double> points(count, 0.0);
-  for (const double arc_mm : standing_out_mm)
-    points[std::min(count - 1, static_cast<std::size_t>(std::max(0.0, arc_mm / found.bin_mm)))] += 1.0;
+  for (const double arc_mm : standing_out_mm) points[arc_bin(arc_mm, found.bin_mm, count)] += 1.0;
   const double usual = median_of(points);
   const double most = usual + kSigmas * std::sqrt(usual + kFewest);
   std::vector<char> out(count);

@@ -7,6 +7,7 @@
 
 #include "acquisition/geometry/median.hpp"
 #include "acquisition/geometry/parallel_for.hpp"
+#include "registration/arc_bins.hpp"
 #include "registration/carried_curve.hpp"
 #include "registration/edge_support.hpp"
 #include "registration/seen_bins.hpp"
@@ -207,8 +208,7 @@ class EdgeFitter {
     std::vector<std::vector<double>> inside_mm(bins);
     for (const StripPoint& p : points_)
       if (p.inlier && fit_.seen_at(p.arc_mm))
-        inside_mm[std::min(bins - 1, static_cast<std::size_t>(p.arc_mm / fit_.bin_mm))].push_back(
-            inside_of_edge_mm(p));
+        inside_mm[arc_bin(p.arc_mm, fit_.bin_mm, bins)].push_back(inside_of_edge_mm(p));
     const auto reach = static_cast<int>(0.5 * kEdgeLimitLengthMm / fit_.bin_mm);
     fit_.row_gap_mm.assign(bins, 0.0);
     for (std::size_t b = 0; b < bins; ++b) {
@@ -299,9 +299,7 @@ EdgeFit::EdgeFit(const ArcSpline& along) : spline(along) {
 }
 
 bool EdgeFit::seen_at(double arc_mm) const {
-  if (seen.empty()) return false;
-  const double bin = arc_mm / bin_mm;
-  return seen[std::min(seen.size() - 1, static_cast<std::size_t>(std::max(0.0, bin)))] != 0;
+  return !seen.empty() && seen[arc_bin(arc_mm, bin_mm, seen.size())] != 0;
 }
 
 double EdgeFit::row_gap_at_mm(double arc_mm) const {

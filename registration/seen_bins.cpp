@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "acquisition/geometry/median.hpp"
+#include "registration/arc_bins.hpp"
 
 namespace arris {
 namespace {
@@ -16,7 +17,7 @@ constexpr double kEmptyRatio = 0.2, kRimRatio = 0.6;  // of the usual number: no
 }  // namespace
 
 std::size_t SeenBins::bin_of(double arc_mm) const {
-  return std::min(seen.size() - 1, static_cast<std::size_t>(std::max(0.0, arc_mm / bin_mm)));
+  return arc_bin(arc_mm, bin_mm, seen.size());
 }
 
 SeenBins find_seen_bins(const std::vector<BesidePoint>& points, double weight, const StripSize& strip) {

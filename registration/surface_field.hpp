@@ -1,8 +1,8 @@
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
+#include "registration/arc_bins.hpp"
 #include "registration/deformation_field.hpp"
 #include "registration/scene.hpp"
 #include "registration/surface_refine.hpp"
@@ -14,9 +14,7 @@ struct SeenAlong {
   static constexpr double kBinMm = 2.5;
   std::vector<char> bins;
   [[nodiscard]] bool at(double arc_mm) const {
-    if (bins.empty()) return true;
-    const auto bin = static_cast<std::size_t>(std::max(0.0, arc_mm / kBinMm));
-    return bins[std::min(bins.size() - 1, bin)] != 0;
+    return bins.empty() || bins[arc_bin(arc_mm, kBinMm, bins.size())] != 0;
   }
 };
 

@@ -3,8 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
+#include "acquisition/geometry/evenly_drawn.hpp"
 #include "acquisition/geometry/parallel_for.hpp"
 #include "acquisition/types/error.hpp"
 #include "registration/common_height.hpp"
@@ -36,14 +36,6 @@ constexpr double kRigidMm = 0.015, kRigidSigmas = 0.3, kMostRigidSigmas = 1.3;
 constexpr double kUnknownThicknessWiden = 2.0;  // the mid-surface's strain is then not known
 constexpr std::size_t kParts = 2;               // chunks of a list: each needs a system of its own
 
-/// A number that looks random: splitmix64 (Steele, Lea, Flood, OOPSLA 2014).
-std::uint64_t hash_of(std::uint64_t number) {
-  std::uint64_t hash = number + 0x9e3779b97f4a7c15;
-  hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9;
-  hash = (hash ^ (hash >> 27)) * 0x94d049bb133111eb;
-  return hash ^ (hash >> 31);
-}
-
 double area_mm2_of(const std::vector<SurfaceCell>& cells) {
   double area_mm2 = 0.0;
   for (const SurfaceCell& cell : cells) area_mm2 += cell.area_mm2;
@@ -61,8 +53,6 @@ class SurfaceFitter {
     for (const Curve& curve : options.role == ContourRole::kEdge ? cad.contours : cad.others)
       edges_.push_back(&curve);
     make_basis(options.node_spacing_mm);
-    fit_.shift_mm.assign(fit_.basis->size(), Eigen::Vector3d::Zero());
-    fit_.offset_mm.assign(edges_.size(), 0.0);
     const double reach_mm = options.band_mm + options.start_scale_mm + 3.0 * scan.spacing_mm;
     near_ =
         points_near(cad, scan, rigid, options.role == ContourRole::kCut ? -1.0 : reach_mm, options.threads);
@@ -73,51 +63,51 @@ class SurfaceFitter {
       fit_.reason = "the drawing's band has no room for a surface field";
       return std::move(fit_);
     }
-    scale_mm_ = options_.start_scale_mm;
-    tau_mm_ = std::max(kStartTauMm, 0.5 * scan_.spacing_mm);
     const std::vector<std::size_t> one_of_each = levels();
     take_points(one_of_each.front());
-    stay_rigid_if_so();
-    for (const std::size_t one_of : one_of_each) {
-      take_points(one_of);
-      if (fit_.rounds > 0) (void)call_burrs();  // before so many points pull the edge to them
+    if (!stays_rigid()) {
+      start_over();
       settle();
-      if (!fit_.usable()) return std::move(fit_);
     }
-    for (int pass = 0; pass < kBurrPasses && call_burrs(); ++pass) {
+    for (std::size_t level = 1; level < one_of_each.size() && fit_.usable(); ++level) {
+      take_points(one_of_each[level]);
+      (void)call_burrs();  // before so many points pull the edge to them
       settle();
-      if (!fit_.usable()) return std::move(fit_);
     }
-    choose_nodes();
-    for (int pass = 1; fit_.usable() && pass < kStrayPasses && call_strays(); ++pass) {
-      settle();
-      if (!fit_.usable()) break;
-    }
+    for (int pass = 0; pass < kBurrPasses && fit_.usable() && call_burrs(); ++pass) settle();
+    if (fit_.usable()) choose_nodes();
+    // The last call has the covariance of the field that is handed out.
+    for (int pass = 1; fit_.usable() && call_strays() && pass < kStrayPasses; ++pass) settle();
     return std::move(fit_);
   }
 
  private:
+  /// No deformation, and everything looked at coarsely.
+  void start_over() {
+    fit_.reason.clear();
+    fit_.shift_mm.assign(fit_.basis->size(), Eigen::Vector3d::Zero());
+    fit_.offset_mm.assign(edges_.size(), 0.0);
+    scale_mm_ = options_.start_scale_mm;
+    tau_mm_ = std::max(kStartTauMm, 0.5 * scan_.spacing_mm);
+  }
+
   /// A part that hardly bends is not allowed to: a soft field would let its contours wander apart, each by
-  /// what its own edge shows. Tried when the rigid motion leaves little; undone when neighbours still share
-  /// more height than kRigidMm and the noise hide.
-  void stay_rigid_if_so() {
+  /// what its own edge shows. Tried when the rigid motion leaves little; then the priors are stiff and the
+  /// field has settled, unless neighbours still share more height than kRigidMm and the noise hide.
+  bool stays_rigid() {
+    start_over();
     look();
     const double hidden_mm = std::max(kRigidMm, kRigidSigmas * scan_.noise_sigma_mm);
-    if (fit_.sigma_mm > std::hypot(kMostRigidSigmas * scan_.noise_sigma_mm, hidden_mm)) return;
+    if (fit_.sigma_mm > std::hypot(kMostRigidSigmas * scan_.noise_sigma_mm, hidden_mm)) return false;
     const SheetPrior soft = prior_;
     prior_.strain_ratio = std::min(kStiffStrainRatio, soft.strain_ratio);
     prior_.bend_per_mm = std::min(kStiffBendPerMm, soft.bend_per_mm);
     settle();
     look();
     const CommonHeight common(pairs_, fit_.basis->spacing_mm(), kGateSigmas * fit_.sigma_mm);
-    if (fit_.usable() && common.mean_mm2() < hidden_mm * hidden_mm) return;
+    if (fit_.usable() && common.mean_mm2() < hidden_mm * hidden_mm) return true;
     prior_ = soft;
-    fit_.reason.clear();
-    fit_.shift_mm.assign(fit_.basis->size(), Eigen::Vector3d::Zero());
-    fit_.offset_mm.assign(edges_.size(), 0.0);
-    scale_mm_ = options_.start_scale_mm;
-    tau_mm_ = std::max(kStartTauMm, 0.5 * scan_.spacing_mm);
-    fit_.rounds = 0;
+    return false;
   }
 
   /// A dense scan is fitted by few of its points first: one of 16, of 4, of 1, as long as the nodes see
@@ -130,13 +120,11 @@ class SurfaceFitter {
     return one_of;
   }
 
-  /// From now on one of so many points takes part, chosen by their number: rows of a profiler are not cut
-  /// out.
+  /// From now on one of so many points takes part.
   void take_points(std::size_t one_of) {
     points_.clear();
     pairs_.clear();
-    for (const std::size_t i : near_)
-      if (one_of == 1 || hash_of(i) % one_of == 0) points_.push_back(i);
+    for (const std::size_t i : evenly_drawn(near_.size(), near_.size() / one_of)) points_.push_back(near_[i]);
     const double spacing_mm = scan_.spacing_mm * std::sqrt(static_cast<double>(one_of));
     const double strip_mm = std::clamp(4.0 * spacing_mm, 3.0, options_.strip_mm);
     strips_.emplace(edges_, *fit_.basis, strip_mm, spacing_mm, options_.scanner.out_mm);

@@ -123,12 +123,12 @@ void judge_edges(const CadModel& cad, const SurfaceField& field, const Registrat
     const EdgeFit& edge = result.contours[c].edge;
     const Curve& curve = cad.contours[c];
     double sum2 = 0.0, count = 1e-9;
-    for (double s_mm = 0.0; s_mm < curve.length_mm(); s_mm += kJudgeStepMm) {
-      if (!edge.seen_at(s_mm)) continue;
+    along(curve, [&](double s_mm) {
+      if (!edge.seen_at(s_mm)) return;
       const double off_mm = edge.spline.at(s_mm).dot(edge.across) - field.fit().offset_mm[c];
       sum2 += off_mm * off_mm;
       count += 1.0;
-    }
+    });
     const double rms_mm = std::sqrt(sum2 / count), offset_mm = field.fit().offset_mm[c];
     const double most_offset_mm = kMostOffsetSds * options.surface.offset_sd_mm + edge.edge_limit_mm();
     if (std::abs(offset_mm) > most_offset_mm) {
