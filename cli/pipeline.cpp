@@ -50,9 +50,25 @@ void describe_inputs(const Recipe& recipe, const Drawing& drawing, const Measure
     record.edge_offset = {true, known->edge, known->spacing_mm, known->date, known->scanner, known->serial};
 }
 
-/// The recipe's, and what is known of the scanner.
-RegistrationOptions options_of(const Recipe& recipe, const Measurement& measurement, int threads) {
+/// Polyline by polyline, the tool's axes as normals.
+std::vector<Contour> polylines_of(const ToolPath& path) {
+  std::vector<Contour> lines;
+  for (const PathRange& range : polylines(path)) {
+    Contour& line = lines.emplace_back();
+    line.closed = range.closed;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      line.points_mm.push_back(path.points[i].tip_mm);
+      line.normals.push_back(path.points[i].axis);
+    }
+  }
+  return lines;
+}
+
+/// The recipe's, with the tool path and what is known of the scanner.
+RegistrationOptions options_of(const Recipe& recipe, const ToolPath& path, const Measurement& measurement,
+                               int threads) {
   RegistrationOptions options = registration_options(recipe, threads);
+  options.coarse.path = polylines_of(path);
   if (measurement.edge) options.edge.scanner = options.surface.scanner = measurement.edge->edge;
   return options;
 }
@@ -65,6 +81,7 @@ void describe_alignment(const Registration& found, const Measurement& measuremen
   alignment.rms_mm = found.rigid.surface_rms_mm;
   alignment.pairs = found.rigid.pairs;
   alignment.runner_up_ratio = found.coarse.runner_up_ratio;
+  alignment.equal_poses = found.coarse.equal_poses;
   alignment.start = found.coarse.start;
   alignment.side_decided_by = measurement.prepared.side_decided_by;
   if (alignment.side_decided_by.empty())
@@ -164,11 +181,15 @@ Processed process(const Recipe& as_written, const Drawing& drawing, Measurement&
   const CadModel cad = prepare_cad(drawing.mesh, drawing.accepted, drawing.others);
   ScanModel& scan = measurement.prepared.model;
   const Registration found =
-      register_scan(recipe, cad, measurement, options_of(recipe, measurement, threads));
+      register_scan(recipe, cad, measurement, options_of(recipe, drawing.path, measurement, threads));
   record.refusals = found.refusals;
   if (found.coarse.mirror_ratio > 0.0 && found.coarse.mirror_ratio < kMirrorAlikeRatio)
     record.notes.push_back(
         "the part is nearly its own mirror image: a scan that was exported mirrored would not be noticed");
+  if (found.coarse.usable() && found.coarse.equal_poses > 1)
+    record.notes.push_back(std::to_string(found.coarse.equal_poses) +
+                           " poses fit alike, and each lays the whole tool path on itself: the path is the "
+                           "same for all of them, the row at which it begins is not told apart");
   describe_alignment(found, measurement, record.alignment);
   describe_loops(found, scan, record);
   if (!found.usable()) return processed;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "acquisition/types/frames.hpp"
+#include "registration/free_directions.hpp"
 #include "registration/scene.hpp"
 
 namespace arris {
@@ -16,7 +17,8 @@ struct CoarseAlignOptions {
   double band_mm = 60.0;     ///< surface that takes part, around the contours
   bool edges_needed =
       true;  ///< false: an initial pose is taken though the scan shows no contour of the drawing
-  double ambiguity_ratio = 1.10;  ///< runner-up's score over the best's below this: refused
+  std::vector<Contour> path = {};  ///< the tool path, normals its axes; empty: it runs round each contour
+  double ambiguity_ratio = 1.10;   ///< runner-up's score over the best's below this: refused
   int threads = 0;
 };
 
@@ -25,9 +27,11 @@ struct CoarseAlignment {
   RigidMotion scan_from_cad = RigidMotion::Identity();
   double score_mm = 0.0;         ///< capped rms of contour to scan edge and of scan to surface
   double runner_up_ratio = 0.0;  ///< score of the best other pose over score_mm; 0: there was no other
+  int equal_poses = 1;           ///< that fit alike and differ by motions that map the whole path onto itself
   bool flipped_normals = false;  ///< the side was unknown and the shape decided for the other sign
-  std::string start;             ///< "matching loops", "initial pose"
-  std::string reason;            ///< refusal in plain words; empty when usable
+  std::string
+      start;  ///< "matching loops", "matching pieces of contours", "matching surfaces", "initial pose"
+  std::string reason;         ///< refusal in plain words; empty when usable
   double mirror_ratio = 0.0;  ///< score of the scan's mirror image over score_mm; near 1: a mirrored export
                               ///< would not be noticed. 0: not tried
   bool inverted =
@@ -39,16 +43,13 @@ struct CoarseAlignment {
   [[nodiscard]] bool usable() const { return reason.empty(); }
 };
 
-/// Start pose from nothing but the contours: every scan loop laid on every CAD loop, the best few refined by
-/// a short rigid ICP and scored; the mirror image of the scan is scored as well, and the other side when
-/// nothing says which side the scanner saw.  Refuses: no loop to match, two sides or two poses that fit alike
-/// (naming what would decide). Cost: some 10 short ICPs on 250 points.
+/// Start pose from nothing: every scan loop laid on every CAD loop; where that leaves much, pieces of the
+/// loops; where nothing fits, features of the surface. The best few are refined by a short rigid ICP and
+/// scored; the mirror image of the scan is scored as well, and the other side when nothing says which side
+/// the scanner saw. The runner-up elsewhere must be clearly worse, unless the motion between the two maps the
+/// whole tool path onto itself. Refuses: nothing to match, no pose that fits, two sides or two poses that fit
+/// alike (naming what would decide). Cost: some 10 short ICPs on 250 points; with pieces 5 to 20 times that.
 [[nodiscard]] CoarseAlignment coarse_align(const CadModel& cad, const ScanModel& scan,
                                            const CoarseAlignOptions& options);
-
-/// Motions that the data leave free, in words ("turn about the axis (0.00 0.00 1.00) through (..)"):
-/// eigenvectors of the information matrix, rotation scaled by the contour's size, below 1e-4 of the largest.
-[[nodiscard]] std::vector<std::string> free_directions(const Eigen::Matrix<double, 6, 6>& information,
-                                                       const Eigen::Vector3d& pivot_mm, double size_mm);
 
 }  // namespace arris

@@ -12,12 +12,12 @@ constexpr std::size_t kArcs = 64;
 constexpr std::size_t kKeptShifts = 4;
 constexpr double kNearlyClosedRatio = 0.15;  // ends this near, in lengths: a loop with a gap
 constexpr double kShortestChainRatio =
-    0.35;                             // of the CAD loop; a shorter piece does not tell where it belongs
-constexpr double kWindowRatio = 0.5;  // of the CAD loop: what a longer scan loop must follow of it
+    0.35;  // of the CAD loop; a shorter piece does not tell where it belongs
+constexpr double kWindowRatios[] = {0.5, 0.33};  // of the CAD loop: what a scan loop must follow of it
 constexpr double kWindowFitsRatio =
     0.03;  // rms over its length: bending and a ragged edge, not another shape
 constexpr double kWindowsALength = 16.0;
-constexpr std::size_t kKeptWindows = 6;
+constexpr std::size_t kKeptWindows = 10;
 constexpr double kRaggedRatios[] = {1.0, 0.9};  // a ragged chain is longer than the edge it follows
 
 /// Means over n equal arcs of a stretch of the curve, which smooths a ragged scan edge to the scale of an
@@ -89,19 +89,19 @@ void sort_by_rms(std::vector<LoopMatch>& matches) {
   std::stable_sort(matches.begin(), matches.end(), [](auto& a, auto& b) { return a.rms_mm < b.rms_mm; });
 }
 
-/// A gap that reaches from the contour to the border of the scan makes one long loop of both: a part of it
-/// still runs along the contour.
-void add_best_windows(const Curve& cad, const Curve& scan, int cad_loop, int scan_loop,
+/// The best stretches of one length of a scan loop or chain.
+void add_best_windows(const Curve& cad, const Curve& scan, double window_mm, LoopMatch names,
                       std::vector<LoopMatch>& matches) {
-  const double window_mm = kWindowRatio * cad.length_mm();
   const double step_mm = cad.length_mm() / kWindowsALength;
   const std::vector<std::vector<Eigen::Vector3d>> stretches = stretches_of(cad, window_mm);
   const double last_mm = scan.length_mm() - (scan.closed() ? 0.0 : window_mm);
   std::vector<LoopMatch> best;
   for (double start_mm = 0.0; start_mm < last_mm; start_mm += step_mm) {
     std::vector<LoopMatch> here;
-    add_best_shifts(fits_to(stretches, arc_means(scan, start_mm, window_mm)), cad_loop, scan_loop, here);
-    if (!here.empty() && here.front().rms_mm < kWindowFitsRatio * window_mm) best.push_back(here.front());
+    add_best_shifts(fits_to(stretches, arc_means(scan, start_mm, window_mm)), names.cad_loop, names.scan_loop,
+                    here);
+    for (const LoopMatch& match : here)
+      if (match.rms_mm < kWindowFitsRatio * window_mm) best.push_back(match);
   }
   sort_by_rms(best);
   if (best.size() > kKeptWindows) best.resize(kKeptWindows);
@@ -132,14 +132,24 @@ std::vector<LoopMatch> match_loops(const std::vector<Contour>& cad_loops,
               cad_index, scan_index, matches);
       }
     }
-    const bool unmatched = std::none_of(matches.begin(), matches.end(), [&](const LoopMatch& match) {
-      return match.cad_loop == static_cast<int>(c);
-    });
-    for (std::size_t l = 0; unmatched && l < scan_loops.size(); ++l) {
+  }
+  sort_by_rms(matches);
+  return matches;
+}
+
+std::vector<LoopMatch> match_pieces(const std::vector<Contour>& cad_loops,
+                                    const std::vector<Contour>& scan_loops) {
+  std::vector<LoopMatch> matches;
+  for (std::size_t c = 0; c < cad_loops.size(); ++c) {
+    if (!cad_loops[c].closed || cad_loops[c].points_mm.size() < 8) continue;
+    const Curve cad(cad_loops[c]);
+    for (std::size_t l = 0; l < scan_loops.size(); ++l) {
       if (scan_loops[l].points_mm.size() < 8) continue;
       const Curve scan(without_small_gap(scan_loops[l]));
-      if (scan.length_mm() > length_ratio * cad.length_mm())
-        add_best_windows(cad, scan, static_cast<int>(c), static_cast<int>(l), matches);
+      for (const double ratio : kWindowRatios)
+        if (scan.length_mm() > 1.1 * ratio * cad.length_mm())
+          add_best_windows(cad, scan, ratio * cad.length_mm(),
+                           {RigidMotion::Identity(), 0.0, static_cast<int>(c), static_cast<int>(l)}, matches);
     }
   }
   sort_by_rms(matches);

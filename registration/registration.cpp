@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kSharpeningPasses = 2;
 constexpr double kLoopReachRatio = 0.6;  // of the band: bending, and what the start pose is off by
-constexpr double kBesideStockMm = 3.0;   // role cut: edges this near to the stock's are no data
+constexpr double kLoopReachScores = 3.0, kLoopReachSpacings = 2.0;  // nor farther than the pose leaves it
+constexpr double kBesideStockMm = 3.0;  // role cut: edges this near to the stock's are no data
 
 /// Turns an undecided scan to the side that the start pose chose.
 void flip(ScanModel& scan) {
@@ -30,7 +31,7 @@ void flip(ScanModel& scan) {
 /// a gap may join it to the border of the scan. The rest is told, not used.
 ///   returns  the contours along which runs a loop that the operator rejected, and none that was accepted
 std::vector<std::size_t> drop_other_loops(const CadModel& cad, ScanModel& scan,
-                                          const RigidMotion& scan_from_cad, double band_mm,
+                                          const RigidMotion& scan_from_cad, double band_mm, double near_mm,
                                           std::vector<LoopAssignment>& assigned) {
   assigned = assign_loops(cad, scan.loops, scan_from_cad, band_mm);
   const RigidMotion cad_from_scan = scan_from_cad.inverse();
@@ -46,8 +47,7 @@ std::vector<std::size_t> drop_other_loops(const CadModel& cad, ScanModel& scan,
       continue;
     }
     for (std::size_t i = 0; i < scan.loops[l].points_mm.size(); ++i) {
-      if (pair_edge(cad, cad_from_scan * scan.loops[l].points_mm[i], kLoopReachRatio * band_mm).contour < 0)
-        continue;
+      if (pair_edge(cad, cad_from_scan * scan.loops[l].points_mm[i], near_mm).contour < 0) continue;
       scan.edge_mm.push_back(scan.loops[l].points_mm[i]);
       scan.edge_normals.push_back(scan.loops[l].normals[i]);
     }
@@ -156,8 +156,11 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   }
   if (result.coarse.flipped_normals) flip(scan);
   scan.side = SideKnown::kYes;
-  for (const std::size_t c :
-       drop_other_loops(posed, scan, result.coarse.scan_from_cad, options.coarse.band_mm, result.loops))
+  const double near_mm =
+      std::min(kLoopReachRatio * options.coarse.band_mm,
+               kLoopReachScores * result.coarse.score_mm + kLoopReachSpacings * scan.spacing_mm);
+  for (const std::size_t c : drop_other_loops(posed, scan, result.coarse.scan_from_cad,
+                                              options.coarse.band_mm, near_mm, result.loops))
     result.refusals.push_back(rejected_by_operator(posed.contours[c]));
   if (!result.refusals.empty()) return result;
   if (cut)

@@ -120,6 +120,7 @@ Facts alignment_facts(const RunRecord& record) {
       {"rms, point to plane", mm(a.rms_mm) + " mm over " + grouped_text(a.pairs) + " kept pairs in the band"},
       {"overlap", percent(a.overlap_ratio)},
       {"second best pose", mm(a.runner_up_ratio, 2) + " times the score of the best (near 1: ambiguous)"},
+      {"poses that give the same path", std::to_string(a.equal_poses)},
       {"free directions", escaped(joined(a.free_directions, "none"))},
       {"standard deviations", escaped(standard_deviations(a))}};
 }

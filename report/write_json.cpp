@@ -74,6 +74,7 @@ Json alignment(const RunRecord& record) {
   json["overlap_ratio"] = number(a.overlap_ratio);
   json["pairs"] = a.pairs;
   json["runner_up_ratio"] = number(a.runner_up_ratio);
+  json["equal_poses"] = a.equal_poses;
   json["side_decided_by"] = a.side_decided_by;
   json["start"] = a.start;
   json["free_directions"] = a.free_directions;

@@ -1,0 +1,165 @@
+#include "registration/pose_search.hpp"
+
+#include <algorithm>
+
+#include "acquisition/geometry/parallel_for.hpp"
+#include "registration/edge_pairs.hpp"
+#include "registration/free_directions.hpp"
+#include "registration/loop_match.hpp"
+#include "registration/rigid_icp.hpp"
+#include "registration/surface_match.hpp"
+
+namespace arris {
+namespace {
+
+constexpr int kSurfaceSample = 160;
+constexpr std::size_t kEdgeSample = 120;
+constexpr int kIcpRounds = 14, kMoreRefinements = 3, kSettlingRounds = 150;
+constexpr double kFirstReachRatio = 2.0, kSecondReachRatio = 0.5;  // of the cap: edge points that take part
+constexpr double kReachSpacings = 2.5;
+constexpr double kSamePlaceRatio = 0.06, kSameStartRatio = 0.15;  // of the contour's size
+
+/// The loops that no operator has rejected.
+std::vector<Contour> not_rejected(const ScanModel& scan) {
+  std::vector<Contour> left;
+  for (std::size_t l = 0; l < scan.loops.size(); ++l)
+    if (!scan.is_rejected(l)) left.push_back(scan.loops[l]);
+  return left;
+}
+
+}  // namespace
+
+void sort_by_misfit(std::vector<PoseCandidate>& candidates) {
+  std::stable_sort(candidates.begin(), candidates.end(), [](const PoseCandidate& a, const PoseCandidate& b) {
+    return a.misfit.patient_mm < b.misfit.patient_mm;
+  });
+}
+
+PoseSearch::PoseSearch(const CadModel& cad, double band_mm, int threads)
+    : cad_(cad), band_mm_(band_mm), threads_(threads), score_(cad, band_mm) {
+  for (const Curve& curve : cad.contours) loops_.push_back(curve.contour());
+}
+
+/// The same scan with only the edge points near the contours at a start pose, of loops that run along them: a
+/// gap may join a contour to the border of the scan.
+ScanModel PoseSearch::along_contours(const LightScan& light, const RigidMotion& start,
+                                     double reach_mm) const {
+  const ScanModel& scan = light.model;
+  const RigidMotion cad_from_scan = start.inverse();
+  std::vector<Eigen::Vector3d> edges;
+  const std::vector<LoopAssignment> assigned = assign_loops(cad_, scan.loops, start, 2.0 * band_mm_);
+  for (std::size_t l = 0; l < scan.loops.size(); ++l)
+    if (assigned[l].contour >= 0)
+      for (const Eigen::Vector3d& p : scan.loops[l].points_mm)
+        if (pair_edge(cad_, cad_from_scan * p, reach_mm).contour >= 0) edges.push_back(p);
+  if (edges.empty()) edges = scan.edge_mm;
+  return {scan.points_mm,  scan.normals,        NearestPoints({}), {}, every(edges, kEdgeSample), {},
+          scan.spacing_mm, scan.noise_sigma_mm, scan.side};
+}
+
+PoseCandidate PoseSearch::refined(const LightScan& scan, const RigidMotion& start, double reach_mm,
+                                  int rounds) const {
+  RigidIcpOptions icp;
+  icp.max_iterations = rounds;
+  icp.stop_change_ratio = rounds > kIcpRounds ? 1e-6 : 1e-3;
+  icp.surface_points = kSurfaceSample;
+  icp.start_scale_mm = std::min(0.6 * score_.cap_mm(), reach_mm);
+  icp.band_mm = band_mm_;
+  icp.threads = 1;
+  const RigidIcpResult result = icp_point_to_plane(cad_, along_contours(scan, start, reach_mm), start, icp);
+  PoseCandidate candidate;
+  if (!result.usable()) return candidate;
+  candidate.scan_from_cad = result.scan_from_cad;
+  candidate.misfit = score_.of(scan, result.scan_from_cad);
+  candidate.free = free_directions(result.information, result.pivot_mm, score_.size_mm());
+  return candidate;
+}
+
+/// Of edge points that take part when the pose is nearly found.
+double PoseSearch::near_mm(const LightScan& scan) const {
+  return std::max(kSecondReachRatio * score_.cap_mm(), kReachSpacings * scan.model.spacing_mm);
+}
+
+PoseCandidate PoseSearch::refine(const LightScan& scan, const RigidMotion& start) const {
+  PoseCandidate best = refined(scan, start, kFirstReachRatio * score_.cap_mm(), kIcpRounds);
+  const double reach_mm = near_mm(scan);
+  for (int again = 0; again < kMoreRefinements && best.usable() && best.misfit.patient_mm > reach_mm / 2.0;
+       ++again) {
+    PoseCandidate next = refined(scan, best.scan_from_cad, reach_mm, kIcpRounds);
+    if (next.misfit.patient_mm >= best.misfit.patient_mm) break;
+    best = std::move(next);
+  }
+  return best;
+}
+
+PoseCandidate PoseSearch::settled(const LightScan& scan, const PoseCandidate& candidate) const {
+  PoseCandidate found = refined(scan, candidate.scan_from_cad, near_mm(scan), kSettlingRounds);
+  found.flip = candidate.flip;
+  return found;
+}
+
+std::string PoseSearch::free_by_surface(const ScanModel& scan, bool flip, const RigidMotion& start) const {
+  LightScan light(scan, flip, false);
+  light.model.edge_mm.clear();
+  light.model.edge_normals.clear();
+  light.model.loops.clear();
+  light.edges = NearestPoints({});
+  std::string words;
+  for (const std::string& direction : refine(light, start).free)
+    words += (words.empty() ? "" : ", ") + direction;
+  return words.empty() ? words : "; the surface alone leaves these free: " + words;
+}
+
+std::vector<RigidMotion> PoseSearch::starts(const LightScan& scan, StartSource source) const {
+  if (source == StartSource::kSurface)
+    return match_surfaces(cad_, scan.model, scan.spacing_mm, band_mm_, threads_);
+  std::vector<RigidMotion> starts;
+  const std::vector<Contour> loops = not_rejected(scan.model);
+  for (const LoopMatch& match :
+       source == StartSource::kLoops ? match_loops(loops_, loops) : match_pieces(loops_, loops))
+    starts.push_back(match.scan_from_cad);
+  return starts;
+}
+
+double PoseSearch::moved_mm(const RigidMotion& a, const RigidMotion& b) const {
+  double moved = 0.0;
+  for (const PoseScore::Sample& s : score_.samples())
+    moved = std::max(moved, (a * s.place_mm - b * s.place_mm).norm());
+  return moved;
+}
+
+std::vector<PoseCandidate> PoseSearch::candidates(const LightScan& scan, StartSource source,
+                                                  std::size_t refined) const {
+  const std::vector<RigidMotion> motions = starts(scan, source);
+  std::vector<std::pair<double, std::size_t>> order(motions.size());
+  parallel_for(motions.size(), 1, threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) order[i] = {score_.of_start(scan, motions[i]).patient_mm, i};
+  });
+  std::sort(order.begin(), order.end());
+  std::vector<RigidMotion> chosen;  // several starts of one pose would crowd out the runner-up
+  for (const auto& [misfit_mm, i] : order) {
+    const bool is_new = std::none_of(chosen.begin(), chosen.end(), [&, i = i](const RigidMotion& other) {
+      return moved_mm(motions[i], other) < kSameStartRatio * score_.size_mm();
+    });
+    if (is_new) chosen.push_back(motions[i]);
+    if (chosen.size() == refined) break;
+  }
+  std::vector<PoseCandidate> found(chosen.size());
+  parallel_for(chosen.size(), 1, threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) found[i] = refine(scan, chosen[i]);
+  });
+  sort_by_misfit(found);
+  return found;
+}
+
+bool PoseSearch::same_place(const PoseCandidate& a, const PoseCandidate& b) const {
+  const double tolerance_mm = kSamePlaceRatio * score_.size_mm();
+  if (moved_mm(a.scan_from_cad, b.scan_from_cad) < tolerance_mm) return true;
+  if (a.free.empty()) return false;
+  const RigidMotion g = a.scan_from_cad.inverse() * b.scan_from_cad;
+  return std::all_of(score_.samples().begin(), score_.samples().end(), [&](const PoseScore::Sample& s) {
+    return nearest_contour(cad_.contours, g * s.place_mm).foot.distance_mm < tolerance_mm;
+  });
+}
+
+}  // namespace arris

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "registration/pose_score.hpp"
+
+namespace arris {
+
+/// A pose that was refined and scored.
+struct PoseCandidate {
+  RigidMotion scan_from_cad = RigidMotion::Identity();
+  PoseMisfit misfit;
+  bool flip = false, mirror = false;
+  std::vector<std::string> free;  ///< motions that the data leave free, in words
+  [[nodiscard]] bool usable() const { return misfit.patient_mm < 1e299; }
+};
+
+/// Where starts come from, in the order in which they are tried.
+enum class StartSource {
+  kLoops,    ///< closed loops and long chains of the scan laid whole on contours of the drawing
+  kPieces,   ///< stretches of them, whatever their length: a clamp or the border of the view cut the contour
+  kSurface,  ///< features of the surface, no contour at all
+};
+
+/// Finds poses of one drawing in a scan: starts from loops, pieces or the surface, a short rigid ICP from the
+/// best, the score.
+class PoseSearch {
+ public:
+  /// Keeps the reference. threads: 0 is all.
+  PoseSearch(const CadModel& cad, double band_mm, int threads);
+
+  [[nodiscard]] const PoseScore& score() const { return score_; }
+  /// Short rigid ICP from a start, and where that leaves much a second one with the edge points that it
+  /// brought near; not usable() where no points are near.
+  [[nodiscard]] PoseCandidate refine(const LightScan& scan, const RigidMotion& start) const;
+  /// The same pose after a long rigid ICP: two that were stopped on their way along an oval come together.
+  [[nodiscard]] PoseCandidate settled(const LightScan& scan, const PoseCandidate& candidate) const;
+  /// The best distinct poses, best first: at most `refined` starts that lie apart are refined.
+  [[nodiscard]] std::vector<PoseCandidate> candidates(const LightScan& scan, StartSource source,
+                                                      std::size_t refined) const;
+  /// In words, what the surface alone leaves free near a pose: where no edge holds the part it slides. Empty:
+  /// nothing.
+  [[nodiscard]] std::string free_by_surface(const ScanModel& scan, bool flip, const RigidMotion& start) const;
+  /// True if the two poses put the contours in the same place, point by point or, where a motion along the
+  /// contour is free (a circle), as curves.
+  [[nodiscard]] bool same_place(const PoseCandidate& a, const PoseCandidate& b) const;
+
+ private:
+  [[nodiscard]] ScanModel along_contours(const LightScan& scan, const RigidMotion& start,
+                                         double reach_mm) const;
+  [[nodiscard]] PoseCandidate refined(const LightScan& scan, const RigidMotion& start, double reach_mm,
+                                      int rounds) const;
+  [[nodiscard]] double near_mm(const LightScan& scan) const;
+  [[nodiscard]] std::vector<RigidMotion> starts(const LightScan& scan, StartSource source) const;
+  [[nodiscard]] double moved_mm(const RigidMotion& a, const RigidMotion& b) const;
+
+  const CadModel& cad_;
+  double band_mm_;
+  int threads_;
+  PoseScore score_;
+  std::vector<Contour> loops_;
+};
+
+/// Best first; equal ones stay in order.
+void sort_by_misfit(std::vector<PoseCandidate>& candidates);
+
+}  // namespace arris
