@@ -38,7 +38,7 @@ BenchPart::BenchPart(const std::filesystem::path& folder, int thread_count)
       truth(fe),
       recipe(read_recipe(folder / "recipe.toml")),
       drawing(read_drawing(recipe, true, thread_count)),
-      cad(prepare_cad(drawing.mesh, drawing.accepted)),
+      cad(prepare_cad(drawing.mesh, drawing.accepted, drawing.others)),
       path_mm(tips(drawing.path)),
       surface_mm(surface_points(fe, truth)),
       threads(thread_count) {}

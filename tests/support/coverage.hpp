@@ -3,11 +3,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "fixtures/synthetic/scan.hpp"
 #include "registration/deformation_field.hpp"
-#include "registration/scene.hpp"
 #include "tests/support/truth.hpp"
 
 namespace arris::bench {
@@ -21,13 +21,21 @@ struct StatedError {
   bool in_gap = false;
 };
 
-/// The nominal points (on contour 0) as the field maps them, beside the truth. A row is in a gap where its
-/// true place lies in a missing disc of the scan. cad_from_local undoes the scan's true pose.
-[[nodiscard]] std::vector<StatedError> stated_errors(const Truth& truth, const CadModel& cad,
-                                                     const DeformationField& field,
+/// Points on the nominal contours and the surface's normals there; CAD frame.
+struct NominalRows {
+  std::vector<Eigen::Vector3d> points_mm, normals;
+};
+
+/// The rows as the field maps them, beside the truth. A row is in a gap where its true place lies in a
+/// missing disc of the scan. cad_from_local undoes the scan's true pose.
+[[nodiscard]] std::vector<StatedError> stated_errors(const Truth& truth, const DeformationField& field,
                                                      const synthetic::SyntheticScan& scan,
                                                      const RigidMotion& cad_from_local,
-                                                     const std::vector<Eigen::Vector3d>& nominal_mm);
+                                                     const NominalRows& nominal);
+
+/// 95th percentile of the turns between the true and the carried surface normal, which is the tool's axis;
+/// degrees, 0 without rows.
+[[nodiscard]] double axis_p95_deg(const std::vector<StatedError>& rows);
 
 /// Sum over path points of one direction.
 class Coverage {
@@ -53,5 +61,10 @@ struct CoverageTable {
     return cells[direction][in_gap ? 1 : 0];
   }
 };
+
+/// Markdown: the heading of a table of coverage, and its lines for one set of scans, seen and (if any) in
+/// gaps; a direction that nothing tells has dashes.
+[[nodiscard]] std::string coverage_heading();
+[[nodiscard]] std::string coverage_rows(const std::string& name, const CoverageTable& table);
 
 }  // namespace arris::bench

@@ -7,6 +7,7 @@
 
 #include "fixtures/synthetic/scan.hpp"
 #include "tests/support/bench_part.hpp"
+#include "tests/support/coverage.hpp"
 
 namespace arris::bench {
 
@@ -30,10 +31,21 @@ enum Method : std::size_t {
   kMethodCount
 };
 
+/// What is asked of a case: mean and peak error over the edge limit E, or in mm.
+enum class Goal {
+  kUsual,   ///< a clean scan of noise 0.05 mm: so many E
+  kTwice,   ///< as much again for what shops have
+  kDense,   ///< 200,000 points: in mm
+  kNothing  ///< everything at once: shown, nothing is asked
+};
+
 /// A way to scan.
 struct BenchCase {
-  std::string name;
+  std::string name, word;  ///< of the tables; of --only
   synthetic::ScanOptions scan;
+  Goal goal = Goal::kTwice;
+  bool every_method = false;  ///< the other methods and the peers as well
+  int most_seeds = 1000;
 };
 [[nodiscard]] std::vector<BenchCase> bench_cases();
 
@@ -42,6 +54,8 @@ struct Outcome {
   std::array<std::optional<PathError>, kMethodCount> error;
   std::optional<PathError> refused;  ///< of a refused correction: what it would have been
   std::vector<std::string> reasons;  ///< of the refusal
+  std::vector<StatedError> stated;   ///< of an accepted path: its rows' errors beside what was stated of them
+  double axis_p95_deg = 0.0;         ///< of an accepted path: 95th percentile of its axes' errors
   Method rigid_winner = kOursToPlane;
   double edge_limit_mm = 0.0;     ///< E
   double surface_limit_mm = 0.0;  ///< sigma / sqrt(points within 10 mm)

@@ -77,7 +77,7 @@ std::string refusal_lines(const CaseResult& result) {
   for (std::size_t i = 0; i < result.seeds.size(); ++i) {
     const Outcome& outcome = result.seeds[i];
     if (outcome.reasons.empty()) continue;
-    text += fmt::format("- seed {}: refused: {}", i + 1, outcome.reasons.front());
+    text += fmt::format("- {}, {}, seed {}: {}", result.part, result.scan, i + 1, outcome.reasons.front());
     if (outcome.refused)
       text += fmt::format(" (it would have been off by {:.2f} mm, at most {:.2f})", outcome.refused->mean_mm,
                           outcome.refused->max_mm);
@@ -88,22 +88,8 @@ std::string refusal_lines(const CaseResult& result) {
 
 const CaseResult* usual(const std::vector<CaseResult>& results, const std::string& part) {
   for (const CaseResult& result : results)
-    if (result.part == part) return &result;
+    if (result.part == part && result.goal == Goal::kUsual) return &result;
   return nullptr;
-}
-
-/// Goals for the mean and the peak error over E: the usual scan, and twice that for any other.
-struct LimitGoal {
-  double mean_ratio, max_ratio;
-};
-LimitGoal limit_goal(const CaseResult& result, bool is_usual) {
-  const bool is_small = result.part == "bracket" || result.part == "duct";
-  const double share = is_usual ? 1.0 : 2.0;
-  return {share * (is_small ? 0.35 : 0.2), share * (is_small ? 1.5 : 0.6)};
-}
-
-std::string ratio_cell(double ratio, double goal, bool refused) {
-  return fmt::format("{:.2f} of {:.2f}: {}", ratio, goal, ratio <= goal && !refused ? "met" : "**missed**");
 }
 
 std::string goal_row(const std::string& what, const std::string& paper, const std::string& goal,
@@ -149,6 +135,7 @@ std::string overview_table(const std::vector<CaseResult>& results) {
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const CaseResult& r : results) {
     const Summary s = summary(r, kWhole);
+    if (s.count == 0) continue;  // all refused: the list of refusals names them
     text += fmt::format(
         "| {} | {} | {} | {:.3f} ({:.3f}) | {:.3f} ({:.3f}) | {:.3f} | {:.3f} | {:.2f} | {:.3f} | {} | {} | "
         "{} | {} of {} |\n",
@@ -169,8 +156,13 @@ std::string case_table(const CaseResult& result) {
   for (const Method method : {kNominal, kBestRigid, kRigidIcp, kParabola, kHeightSpline, kPaper,
                               kPaperNoSupport, kPlain, kSupported, kRefined, kWhole})
     text += row_text(result, method);
-  const std::string refused = refusal_lines(result);
-  return text + (refused.empty() ? "" : "\n" + refused);
+  return text;
+}
+
+std::string refusal_list(const std::vector<CaseResult>& results) {
+  std::string text;
+  for (const CaseResult& result : results) text += refusal_lines(result);
+  return text.empty() ? "None was refused.\n" : text;
 }
 
 std::string rigid_table(const std::vector<CaseResult>& results) {
@@ -182,6 +174,7 @@ std::string rigid_table(const std::vector<CaseResult>& results) {
   }
   text += "\n" + line + "\n";
   for (const CaseResult& r : results) {
+    if (!r.every_method) continue;
     text += fmt::format("| {} | {} |", r.part, r.scan);
     for (const Method method : methods) {
       const Summary s = summary(r, method);
@@ -191,25 +184,6 @@ std::string rigid_table(const std::vector<CaseResult>& results) {
       text += fmt::format(" {:.2f} / {:.2f}, best {} times |", s.mean_mm, s.max_mm, wins);
     }
     text += "\n";
-  }
-  return text;
-}
-
-std::string limit_table(const std::vector<CaseResult>& results) {
-  std::string text = "| part | scan | E | mean / E | max / E | refused |\n|---|---|---|---|---|---|\n";
-  for (const CaseResult& r : results) {
-    const Summary s = summary(r, kWhole);
-    const double limit_mm = mean_of(r, &Outcome::edge_limit_mm);
-    const LimitGoal goal = limit_goal(r, &r == usual(results, r.part));
-    const std::size_t refused = refusals(r);
-    if (s.count == 0) {
-      text += fmt::format("| {} | {} | {:.3f} | - | - | all |\n", r.part, r.scan, limit_mm);
-      continue;
-    }
-    text +=
-        fmt::format("| {} | {} | {:.3f} | {} | {} | {} of {} |\n", r.part, r.scan, limit_mm,
-                    ratio_cell(s.mean_mm / limit_mm, goal.mean_ratio, refused > 0),
-                    ratio_cell(s.max_mm / limit_mm, goal.max_ratio, refused > 0), refused, r.seeds.size());
   }
   return text;
 }

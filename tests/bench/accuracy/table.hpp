@@ -10,6 +10,8 @@ namespace arris::bench {
 /// All seeds of one part scanned in one way.
 struct CaseResult {
   std::string part, scan;
+  Goal goal = Goal::kNothing;
+  bool every_method = false;
   bool along_free = false;  ///< a circle: sliding along the edge is unobservable and harmless
   std::vector<Outcome> seeds;
 };
@@ -29,14 +31,13 @@ struct Summary {
 
 /// The whole method, one line a case, with yardsticks and refusals.
 [[nodiscard]] std::string overview_table(const std::vector<CaseResult>& results);
-/// Every method of one case, and beneath it which rigid ICP was the best and what was refused.
+/// Every method of one case.
 [[nodiscard]] std::string case_table(const CaseResult& result);
 /// The four rigid ICPs apart, one line a case.
 [[nodiscard]] std::string rigid_table(const std::vector<CaseResult>& results);
-/// The stated goals beside what the usual scans reached.
+/// What is asked beside the paper's figures, and what the usual scans reached.
 [[nodiscard]] std::string target_table(const std::vector<CaseResult>& results);
-/// The whole method against what a scan can show: mean and peak error over E, and the goals; a refused seed
-/// misses.
-[[nodiscard]] std::string limit_table(const std::vector<CaseResult>& results);
+/// The refused scans, each with its first reason and what its path would have been off by.
+[[nodiscard]] std::string refusal_list(const std::vector<CaseResult>& results);
 
 }  // namespace arris::bench

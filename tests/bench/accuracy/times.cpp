@@ -53,7 +53,8 @@ class Clock {
     for (int round = -kWarmUp; round < rounds; ++round) {
       counts_ = round >= 0;
       take(result_.total, [&] { whole(part_.cad); });
-      take(result_.with_cad, [&] { whole(prepare_cad(part_.drawing.mesh, part_.drawing.accepted)); });
+      take(result_.with_cad,
+           [&] { whole(prepare_cad(part_.drawing.mesh, part_.drawing.accepted, part_.drawing.others)); });
       place_ = 0;
       stages();
       place_ = 0;

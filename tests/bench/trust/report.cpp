@@ -63,23 +63,12 @@ std::string against_complete(const StudyResult& result, const StudyResult& compl
       limit);
 }
 
-std::string coverage_cells(const Coverage& coverage) {
-  if (coverage.count() == 0) return " - | - |";
-  return fmt::format(" {:.1f} % | {:.1f} |", 100.0 * coverage.inside_ratio(), coverage.bound_ratio());
-}
-
 void add_coverage(const std::string& name, const std::vector<const StudyOutcome*>& outcomes,
                   std::string& text) {
   CoverageTable table;
   for (const StudyOutcome* outcome : outcomes)
     if (accepted(*outcome)) table.add(outcome->rows);
-  for (const bool gap : {false, true}) {
-    if (table.at(StatedError::kNormal, gap).count() == 0) continue;
-    text += fmt::format("| {} | {} |", name, gap ? "in gaps" : "seen");
-    for (std::size_t d = 0; d < StatedError::kDirections; ++d)
-      text += coverage_cells(table.at(static_cast<StatedError::Direction>(d), gap));
-    text += "\n";
-  }
+  text += coverage_rows(name, table);
 }
 
 }  // namespace
@@ -136,9 +125,7 @@ std::string distribution_table(const std::vector<StudyResult>& results) {
 }
 
 std::string study_coverage_table(const std::vector<StudyResult>& results) {
-  std::string text =
-      "| scans | | normal | bound / rms | across | bound / rms | along | bound / rms | axis | bound / rms |\n"
-      "|---|---|---|---|---|---|---|---|---|---|\n";
+  std::string text = coverage_heading();
   std::map<std::string, std::vector<const StudyOutcome*>> kinds;
   std::vector<const StudyOutcome*> all;
   for (const StudyResult& result : results) {

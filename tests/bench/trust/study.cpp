@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "acquisition/clean.hpp"
 #include "cli/prepare.hpp"
@@ -48,11 +47,13 @@ CadModel drawing_of(const synthetic::Part& part) {
   return prepare_cad(part.cad_mesh(kCadEdgeMm), {part.nominal_contour(0, 1.0)}, others);
 }
 
-std::vector<Eigen::Vector3d> path_on(const Curve& contour) {
-  std::vector<Eigen::Vector3d> path_mm;
-  for (double s_mm = 0.0; s_mm < contour.length_mm(); s_mm += kPathStepMm)
-    path_mm.push_back(contour.point_mm(s_mm));
-  return path_mm;
+NominalRows path_on(const Curve& contour) {
+  NominalRows path;
+  for (double s_mm = 0.0; s_mm < contour.length_mm(); s_mm += kPathStepMm) {
+    path.points_mm.push_back(contour.point_mm(s_mm));
+    path.normals.push_back(contour.normal(s_mm));
+  }
+  return path;
 }
 
 double distance_mm(const StatedError& row) {
@@ -61,12 +62,10 @@ double distance_mm(const StatedError& row) {
 
 void sum_up(StudyOutcome& outcome) {
   double sum2 = 0.0, gap_sum2 = 0.0, gap_count = 1e-9;
-  std::vector<double> turns_rad;
   for (const StatedError& row : outcome.rows) {
     const double off_mm = distance_mm(row);
     sum2 += off_mm * off_mm;
     outcome.max_mm = std::max(outcome.max_mm, off_mm);
-    turns_rad.push_back(row.turn_rad);
     if (!row.in_gap) continue;
     gap_sum2 += off_mm * off_mm;
     gap_count += 1.0;
@@ -74,9 +73,7 @@ void sum_up(StudyOutcome& outcome) {
   }
   outcome.rms_mm = std::sqrt(sum2 / static_cast<double>(outcome.rows.size()));
   outcome.gap_rms_mm = std::sqrt(gap_sum2 / gap_count);
-  const auto p95 = turns_rad.begin() + static_cast<std::ptrdiff_t>(turns_rad.size() * 95 / 100);
-  std::nth_element(turns_rad.begin(), p95, turns_rad.end());
-  outcome.normal_p95_deg = *p95 * 180.0 / std::numbers::pi;
+  outcome.normal_p95_deg = axis_p95_deg(outcome.rows);
 }
 
 }  // namespace
@@ -104,7 +101,7 @@ StudyOutcome study_scan(const StudyPart& study, StudyCase study_case, std::uint6
   const synthetic::SyntheticScan scan = sample_scan(*study.part, scan_options(study, study_case), seed);
   const Truth truth(*study.part);
   const CadModel cad = drawing_of(*study.part);
-  const std::vector<Eigen::Vector3d> path_mm = path_on(cad.contours[0]);
+  const NominalRows path = path_on(cad.contours[0]);
   Recipe recipe;  // what the program does when a recipe names none of registration's options
   recipe.part.thickness_mm = study.part->thickness_mm();
   Scan measured;
@@ -122,14 +119,14 @@ StudyOutcome study_scan(const StudyPart& study, StudyCase study_case, std::uint6
   outcome.refusals = found.refusals;
   outcome.has_path = found.usable();
   if (found.usable()) {
-    outcome.rows = stated_errors(truth, cad, *found.field, scan, cad_from_local, path_mm);
+    outcome.rows = stated_errors(truth, *found.field, scan, cad_from_local, path);
     sum_up(outcome);
   }
   if (study_case != StudyCase::kTenMissing) return outcome;
   options.method = RegistrationMethod::kSubdivision;
   const Registration baseline = register_part(cad, prepared.model, options);
   if (!baseline.usable()) return outcome;
-  for (const StatedError& row : stated_errors(truth, cad, *baseline.field, scan, cad_from_local, path_mm))
+  for (const StatedError& row : stated_errors(truth, *baseline.field, scan, cad_from_local, path))
     if (row.in_gap)
       outcome.subdivision_gap_max_mm = std::max(outcome.subdivision_gap_max_mm, distance_mm(row));
   return outcome;

@@ -1,0 +1,40 @@
+#include "tests/bench/accuracy/goal_row.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace arris::bench {
+
+std::string goal_table(const std::vector<GoalRow>& rows) {
+  std::string text =
+      "| case | part | asked | reached | worst scan | scans within | refused | "
+      "|\n|---|---|---|---|---|---|---|---|\n";
+  for (const GoalRow& row : rows)
+    text += fmt::format("| {} | {} | {} | {} | {} | {} of {} | {} | {} |\n", row.what, row.part, row.goal,
+                        row.reached, row.worst, row.within, row.scans, row.refused,
+                        row.met ? "met" : "**missed**");
+  return text;
+}
+
+std::string text_of(const MeanMax& error) {
+  return fmt::format("{:.3f} / {:.3f} mm", error.mean_mm, error.max_mm);
+}
+
+void judge(GoalRow& row, const std::vector<MeanMax>& accepted, std::size_t refused, const MeanMax& limit) {
+  row.scans = accepted.size() + refused;
+  row.refused = refused;
+  MeanMax mean, worst;
+  for (const MeanMax& error : accepted) {
+    mean.mean_mm += error.mean_mm / static_cast<double>(accepted.size());
+    mean.max_mm += error.max_mm / static_cast<double>(accepted.size());
+    worst.mean_mm = std::max(worst.mean_mm, error.mean_mm);
+    worst.max_mm = std::max(worst.max_mm, error.max_mm);
+    row.within += error.within(limit) ? 1U : 0U;
+  }
+  row.reached = accepted.empty() ? "-" : text_of(mean);
+  row.worst = accepted.empty() ? "-" : text_of(worst);
+  row.met = refused == 0 && !accepted.empty() && mean.within(limit);
+}
+
+}  // namespace arris::bench
