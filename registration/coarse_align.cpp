@@ -12,11 +12,13 @@ namespace arris {
 namespace {
 
 constexpr std::size_t kRefined = 4, kRefinedMore = 8,
-                      kRefinedOfGood = 2;   // starts a hypothesis that are refined
-constexpr double kFitsCapRatio = 0.33;      // of the largest distance that scores count, beyond the spacing
-constexpr double kFewestShown = 0.55;       // of the contours: less shows no pose
+                      kRefinedOfGood = 2;  // starts a hypothesis that are refined
+constexpr double kFitsCapRatio = 0.33;     // of the largest distance that scores count, beyond the spacing
+constexpr double kFewestShown = 0.40;      // of the contours: less shows no pose
+constexpr double kMostAgainst = 0.2, kMostAgainstWhole = 0.1;  // of the contours: the face goes on there
 constexpr double kGoodCapRatio = 0.25;      // a pose from whole loops as good as this is not searched further
 constexpr double kMirrorBetterRatio = 0.6;  // of the scores beyond what the point spacing alone leaves
+constexpr double kMirrorLeastRatio = 0.1;   // of the cap: a pose that leaves no more is not doubted
 constexpr double kMirrorOfAmbiguousRatio = 0.8;  // of the scores, when two poses fit alike
 constexpr double kInitialFitsRatio = 0.08;  // of the contour's size: a long side on a short one leaves more
 constexpr double kNotWorseRatio = 0.95;     // of the strict misfits: who wins by the patient one
@@ -35,8 +37,7 @@ std::string percent(double ratio) {
 }
 
 /// What a score holds beyond the offset of angle-gap edge points, about a spacing.
-double beyond_spacing(const PoseCandidate& candidate, const ScanModel& scan) {
-  const double misfit_mm = candidate.misfit.patient_mm;
+double beyond_spacing(double misfit_mm, const ScanModel& scan) {
   return std::sqrt(std::max(0.0, misfit_mm * misfit_mm - scan.spacing_mm * scan.spacing_mm));
 }
 
@@ -63,14 +64,22 @@ class CoarseSearch {
  private:
   [[nodiscard]] std::vector<PoseCandidate> proper(StartSource source, std::size_t refined) const;
   [[nodiscard]] bool fits(const std::vector<PoseCandidate>& found, double cap_ratio) const {
-    return !found.empty() && beyond_spacing(found.front(), scan_) <= cap_ratio * search_.score().cap_mm() &&
-           (found.front().misfit.shown_ratio >= kFewestShown || !options_.edges_needed);
+    return !found.empty() &&
+           beyond_spacing(found.front().misfit.patient_mm, scan_) <= cap_ratio * search_.score().cap_mm() &&
+           (found.front().misfit.shown_ratio >= kFewestShown || !options_.edges_needed) &&
+           found.front().misfit.against_ratio <= kMostAgainst;
   }
+  /// So well that nothing else need be tried: what the scan does not show may be beyond its border.
+  [[nodiscard]] bool fits_whole(const std::vector<PoseCandidate>& found) const {
+    return fits(found, kGoodCapRatio) && found.front().misfit.against_ratio <= kMostAgainstWhole &&
+           beyond_spacing(found.front().misfit.strict_mm, scan_) <= kGoodCapRatio * search_.score().cap_mm();
+  }
+  [[nodiscard]] std::vector<PoseCandidate> with_turned(std::vector<PoseCandidate> found) const;
   [[nodiscard]] std::vector<PoseCandidate> all_candidates();
   void take(const PoseCandidate& best);
   void refuse_no_start();
   void refuse_no_fit(const PoseCandidate& best);
-  [[nodiscard]] bool refuse_wrong_hand(const PoseCandidate& best);
+  [[nodiscard]] bool refuse_wrong_hand(const std::vector<PoseCandidate>& found);
   void judge_runner_up(const std::vector<PoseCandidate>& proper);
   [[nodiscard]] bool comes_to(const PoseCandidate& best, const PoseCandidate& other) const;
   void refuse_ambiguous(const PoseCandidate& best, const PoseCandidate& other);
@@ -108,7 +117,8 @@ CoarseAlignment CoarseSearch::from_initial() {
   if (rotation_between_rad(initial, best.scan_from_cad) > options_.within_rad)
     result_.reason = "the data turn the part by more than the initial pose allows (within_deg)" +
                      search_.free_by_surface(scan_, best.flip, initial);
-  else if (options_.edges_needed && result_.score_mm > kInitialFitsRatio * search_.score().size_mm())
+  else if (options_.edges_needed &&
+           beyond_spacing(result_.score_mm, scan_) > kInitialFitsRatio * search_.score().size_mm())
     result_.reason = "the initial pose does not fit: the scan's edge stays " + millimetres(result_.score_mm) +
                      " mm from the contours";
   return result_;
@@ -125,11 +135,23 @@ std::vector<PoseCandidate> CoarseSearch::proper(StartSource source, std::size_t 
   return found;
 }
 
+std::vector<PoseCandidate> CoarseSearch::with_turned(std::vector<PoseCandidate> found) const {
+  if (found.empty() || !found.front().usable()) return found;
+  const LightScan light(scan_, found.front().flip, false);
+  const std::vector<PoseCandidate> more = search_.turned(light, found.front());
+  found.insert(found.end(), more.begin(), more.end());
+  sort_by_misfit(found);
+  const PoseCandidate settled = search_.settled(light, found.front());  // it may be on its way along an oval
+  if (settled.misfit.patient_mm < found.front().misfit.patient_mm) found.front() = settled;
+  sort_by_misfit(found);
+  return found;
+}
+
 /// Whole loops first; then pieces of contours, where no loop fits well; then the surface, where nothing fits.
 std::vector<PoseCandidate> CoarseSearch::all_candidates() {
   result_.start = "matching loops";
   std::vector<PoseCandidate> found = proper(StartSource::kLoops, kRefined);
-  if (fits(found, kGoodCapRatio)) return found;
+  if (fits_whole(found)) return with_turned(std::move(found));
   const auto add = [&](StartSource source, const char* words) {
     const double before_mm = found.empty() ? 1e300 : found.front().misfit.patient_mm;
     const std::vector<PoseCandidate> more = proper(source, kRefinedMore);
@@ -138,8 +160,8 @@ std::vector<PoseCandidate> CoarseSearch::all_candidates() {
     if (!found.empty() && found.front().misfit.patient_mm < before_mm) result_.start = words;
   };
   add(StartSource::kPieces, "matching pieces of contours");
-  if (!fits(found, kFitsCapRatio)) add(StartSource::kSurface, "matching surfaces");
-  return found;
+  if (!fits(found, kGoodCapRatio)) add(StartSource::kSurface, "matching surfaces");
+  return with_turned(std::move(found));
 }
 
 void CoarseSearch::refuse_no_start() {
@@ -160,8 +182,11 @@ void CoarseSearch::refuse_no_fit(const PoseCandidate& best) {
 }
 
 /// A scan whose mirror image fits, or that fits inside out, is an input error and not a pose.
-bool CoarseSearch::refuse_wrong_hand(const PoseCandidate& best) {
-  const bool good = side_open() || best.misfit.patient_mm <= 2.0 * scan_.spacing_mm;
+bool CoarseSearch::refuse_wrong_hand(const std::vector<PoseCandidate>& found) {
+  const PoseCandidate& best = found.front();
+  const double left_mm = beyond_spacing(best.misfit.patient_mm, scan_);
+  const bool good =
+      side_open() || fits_whole(found) || left_mm < kMirrorLeastRatio * search_.score().cap_mm();
   const std::size_t refined = good ? kRefinedOfGood : kRefined;
   const std::vector<PoseCandidate> mirrored =
       search_.candidates(LightScan(scan_, false, true), StartSource::kLoops, refined);
@@ -169,7 +194,7 @@ bool CoarseSearch::refuse_wrong_hand(const PoseCandidate& best) {
   if (good) return false;
   const auto fits_better = [&](const std::vector<PoseCandidate>& others) {
     return !others.empty() &&
-           beyond_spacing(others.front(), scan_) < kMirrorBetterRatio * beyond_spacing(best, scan_);
+           beyond_spacing(others.front().misfit.patient_mm, scan_) < kMirrorBetterRatio * left_mm;
   };
   result_.mirrored = fits_better(mirrored);
   result_.inverted =
@@ -236,7 +261,7 @@ CoarseAlignment CoarseSearch::from_nothing() {
   }
   const PoseCandidate& best = found.front();
   take(best);
-  if (refuse_wrong_hand(best)) return result_;
+  if (refuse_wrong_hand(found)) return result_;
   if (!fits(found, kFitsCapRatio)) {  // then every pose is about as bad as another
     refuse_no_fit(best);
     return result_;

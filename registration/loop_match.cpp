@@ -17,7 +17,8 @@ constexpr double kWindowRatios[] = {0.5, 0.33};  // of the CAD loop: what a scan
 constexpr double kWindowFitsRatio =
     0.03;  // rms over its length: bending and a ragged edge, not another shape
 constexpr double kWindowsALength = 16.0;
-constexpr std::size_t kKeptWindows = 10;
+constexpr std::size_t kKeptWindows = 16;
+constexpr double kSamePlaceRatio = 0.015;       // of the length of a contour
 constexpr double kRaggedRatios[] = {1.0, 0.9};  // a ragged chain is longer than the edge it follows
 
 /// Means over n equal arcs of a stretch of the curve, which smooths a ragged scan edge to the scale of an
@@ -89,6 +90,16 @@ void sort_by_rms(std::vector<LoopMatch>& matches) {
   std::stable_sort(matches.begin(), matches.end(), [](auto& a, auto& b) { return a.rms_mm < b.rms_mm; });
 }
 
+/// How far two motions put a contour apart, by a few of its places.
+double moved_mm(const Curve& cad, const RigidMotion& a, const RigidMotion& b) {
+  double moved = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    const Eigen::Vector3d p = cad.point_mm(0.25 * k * cad.length_mm());
+    moved = std::max(moved, (a * p - b * p).norm());
+  }
+  return moved;
+}
+
 /// The best stretches of one length of a scan loop or chain.
 void add_best_windows(const Curve& cad, const Curve& scan, double window_mm, LoopMatch names,
                       std::vector<LoopMatch>& matches) {
@@ -104,8 +115,15 @@ void add_best_windows(const Curve& cad, const Curve& scan, double window_mm, Loo
       if (match.rms_mm < kWindowFitsRatio * window_mm) best.push_back(match);
   }
   sort_by_rms(best);
-  if (best.size() > kKeptWindows) best.resize(kKeptWindows);
-  matches.insert(matches.end(), best.begin(), best.end());
+  std::vector<LoopMatch> kept;  // one of those that lay the contour in the same place
+  for (const LoopMatch& match : best) {
+    if (kept.size() == kKeptWindows) break;
+    if (std::none_of(kept.begin(), kept.end(), [&](const LoopMatch& other) {
+          return moved_mm(cad, match.scan_from_cad, other.scan_from_cad) < kSamePlaceRatio * cad.length_mm();
+        }))
+      kept.push_back(match);
+  }
+  matches.insert(matches.end(), kept.begin(), kept.end());
 }
 
 }  // namespace

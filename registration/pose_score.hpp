@@ -12,22 +12,28 @@ namespace arris {
 class LightScan {
  public:
   LightScan(const ScanModel& scan, bool flip, bool mirror);
-  ScanModel model;      ///< thinned; without a tree
-  NearestPoints edges;  ///< over model.edge_mm
-  double spacing_mm;    ///< of the thinned points
+  ScanModel model;             ///< thinned; without a tree
+  NearestPoints edges;         ///< over model.edge_mm
+  double spacing_mm;           ///< of the thinned points
+  std::vector<char> stood_on;  ///< one a loop: the foot of a clamp or a lump, no hole
 
   /// Whether a point of the full scan lies within reach_mm.
   [[nodiscard]] bool covers(const Eigen::Vector3d& p_mm, double reach_mm) const;
-  /// Whether so many points within reach_mm beside p and height_mm over or under it have normals within 60
-  /// degrees that they are no strays.
-  [[nodiscard]] bool has_material(const Eigen::Vector3d& p_mm, const Eigen::Vector3d& normal, double reach_mm,
-                                  double height_mm) const;
+  /// The scan's points within reach_mm beside p and height_mm over or under it whose normals are within 60
+  /// degrees.
+  struct Patch {
+    double covered_ratio = 0.0;  ///< of as many points as an even scan of a face has there
+    double height_mm = 0.0;      ///< their median over p, along the normal
+  };
+  [[nodiscard]] Patch patch_at(const Eigen::Vector3d& p_mm, const Eigen::Vector3d& normal, double reach_mm,
+                               double height_mm) const;
 
  private:
   [[nodiscard]] Eigen::Vector3d unmirrored(Eigen::Vector3d v) const {
     if (mirror_) v.x() = -v.x();
     return v;
   }
+  [[nodiscard]] bool is_stood_on(const Contour& loop) const;
   const ScanModel& scan_;
   bool flip_, mirror_;
 };
@@ -36,7 +42,8 @@ class LightScan {
 /// hidden, with a quarter, and with a tenth. Capped trimmed rms; mm.
 struct PoseMisfit {
   double patient_mm = 1e300, middle_mm = 1e300, strict_mm = 1e300;
-  double shown_ratio = 0.0;  ///< of the contours' samples: an edge of the scan is near, not only the cap
+  double shown_ratio = 0.0;    ///< of the contours' samples: an edge of the scan is near, not only the cap
+  double against_ratio = 0.0;  ///< of them: the scan's face goes on where the drawing ends
 };
 
 /// Scores poses of one drawing. What counts: the followed contours on the scan's edge; scan points near them
@@ -63,12 +70,19 @@ class PoseScore {
   [[nodiscard]] const std::vector<Sample>& samples() const { return samples_; }
 
  private:
+  /// What the scan says where a sample comes to lie.
+  enum class Seen { kEdge, kNothing, kFaceGoesOn };
+  struct Place {
+    double off2_mm2 = 0.0;  ///< squared distance to the nearest edge, or what stands for it
+    Seen seen = Seen::kEdge;
+  };
   [[nodiscard]] PoseMisfit misfit(const LightScan& scan, const RigidMotion& scan_from_cad,
-                                  std::vector<double> edge2) const;
-  void cap_unsupported(const LightScan& scan, const RigidMotion& scan_from_cad,
-                       std::vector<double>& edge2) const;
-  [[nodiscard]] std::vector<double> edge2(const LightScan& scan, const RigidMotion& scan_from_cad) const;
+                                  const std::vector<Place>& places) const;
+  void judge_support(const LightScan& scan, const RigidMotion& scan_from_cad,
+                     std::vector<Place>& places) const;
+  [[nodiscard]] std::vector<Place> edges(const LightScan& scan, const RigidMotion& scan_from_cad) const;
   [[nodiscard]] std::vector<double> surface2(const LightScan& scan, const RigidMotion& cad_from_scan) const;
+  [[nodiscard]] double hidden2(const LightScan& scan) const;
   [[nodiscard]] double other_contours2(const LightScan& scan, const RigidMotion& scan_from_cad) const;
   [[nodiscard]] double stray_holes2(const LightScan& scan, const RigidMotion& cad_from_scan) const;
   [[nodiscard]] bool may_be_other_hole(const Contour& loop) const;

@@ -13,6 +13,10 @@ namespace arris {
 namespace {
 
 constexpr int kSurfaceSample = 160;
+constexpr double kTellingRatio = 0.5;  // of the longest followed contour: a small hole alone tells too little
+constexpr double kSelfFitsRatio = 0.2;     // of the contour's size: the drawing nearly lies on itself
+constexpr double kSelfLengthRatio = 1.15;  // of two of its contours
+constexpr std::size_t kMostTurned = 4;
 constexpr std::size_t kEdgeSample = 120;
 constexpr int kIcpRounds = 14, kMoreRefinements = 3, kSettlingRounds = 150;
 constexpr double kFirstReachRatio = 2.0, kSecondReachRatio = 0.5;  // of the cap: edge points that take part
@@ -38,6 +42,13 @@ void sort_by_misfit(std::vector<PoseCandidate>& candidates) {
 PoseSearch::PoseSearch(const CadModel& cad, double band_mm, int threads)
     : cad_(cad), band_mm_(band_mm), threads_(threads), score_(cad, band_mm) {
   for (const Curve& curve : cad.contours) loops_.push_back(curve.contour());
+  const auto telling = [&](const Curve& curve) {
+    return curve.length_mm() > kTellingRatio * 6.28 * score_.size_mm();
+  };
+  for (const Curve& curve : cad.contours)
+    if (telling(curve)) telling_.push_back(curve.contour());
+  for (const Curve& curve : cad.others)
+    if (telling(curve)) loops_.push_back(curve.contour()), telling_.push_back(curve.contour());
 }
 
 /// The same scan with only the edge points near the contours at a start pose, of loops that run along them: a
@@ -116,9 +127,26 @@ std::vector<RigidMotion> PoseSearch::starts(const LightScan& scan, StartSource s
   std::vector<RigidMotion> starts;
   const std::vector<Contour> loops = not_rejected(scan.model);
   for (const LoopMatch& match :
-       source == StartSource::kLoops ? match_loops(loops_, loops) : match_pieces(loops_, loops))
+       source == StartSource::kLoops ? match_loops(loops_, loops) : match_pieces(telling_, loops))
     starts.push_back(match.scan_from_cad);
   return starts;
+}
+
+std::vector<PoseCandidate> PoseSearch::turned(const LightScan& scan, const PoseCandidate& candidate) const {
+  std::vector<PoseCandidate> found;
+  std::vector<RigidMotion> tried = {candidate.scan_from_cad};
+  for (const LoopMatch& match : match_loops(loops_, loops_, kSelfLengthRatio)) {
+    const RigidMotion start = candidate.scan_from_cad * match.scan_from_cad;
+    if (match.rms_mm > kSelfFitsRatio * score_.size_mm() || tried.size() > kMostTurned) break;
+    if (std::any_of(tried.begin(), tried.end(), [&](const RigidMotion& other) {
+          return moved_mm(start, other) < kSameStartRatio * score_.size_mm();
+        }))
+      continue;
+    tried.push_back(start);
+    found.push_back(refine(scan, start));
+    found.back().flip = candidate.flip;
+  }
+  return found;
 }
 
 double PoseSearch::moved_mm(const RigidMotion& a, const RigidMotion& b) const {

@@ -39,6 +39,10 @@ class PoseSearch {
   /// The best distinct poses, best first: at most `refined` starts that lie apart are refined.
   [[nodiscard]] std::vector<PoseCandidate> candidates(const LightScan& scan, StartSource source,
                                                       std::size_t refined) const;
+  /// The poses that differ from one by a motion which lays the drawing's contours nearly on themselves: where
+  /// the starts missed the right one of them, this finds it.
+  [[nodiscard]] std::vector<PoseCandidate> turned(const LightScan& scan,
+                                                  const PoseCandidate& candidate) const;
   /// In words, what the surface alone leaves free near a pose: where no edge holds the part it slides. Empty:
   /// nothing.
   [[nodiscard]] std::string free_by_surface(const ScanModel& scan, bool flip, const RigidMotion& start) const;
@@ -59,7 +63,7 @@ class PoseSearch {
   double band_mm_;
   int threads_;
   PoseScore score_;
-  std::vector<Contour> loops_;
+  std::vector<Contour> loops_, telling_;  ///< to lay the scan's on: whole ones, and pieces of long ones
 };
 
 /// Best first; equal ones stay in order.

@@ -18,12 +18,13 @@ struct Arguments {
   std::filesystem::path fixtures, out;
   std::string part;
   int poses = 0, first = 0, threads = 0;
-  int scene = -1;  ///< of pose_scenes(); -1: all
+  int scene = -1;     ///< of pose_scenes(); -1: all
   bool each = false;  ///< a line a pose that is not right, on stderr
 };
 
 Arguments parse(int argc, char** argv) {
-  const Words words(argc, argv, kUsage, {"--first", "--fixtures", "--out", "--part", "--poses", "--scene", "--threads"},
+  const Words words(argc, argv, kUsage,
+                    {"--first", "--fixtures", "--out", "--part", "--poses", "--scene", "--threads"},
                     {"--each"});
   Arguments arguments;
   arguments.fixtures = words.text("--fixtures", "fixtures/fe");

@@ -11,7 +11,8 @@ namespace arris::bench {
 namespace {
 
 constexpr double kCheckStepMm = 3.0;
-constexpr double kAllowedOfBest = 1.5, kAllowedOfSize = 0.015, kAllowedOfSpacing = 0.75;
+constexpr double kOfBest = 0.5;    // of the spacing: beyond this the field has to show what it makes of it
+constexpr double kOfField = 0.25;  // of the spacing: mean of the field's path from the true curves
 
 struct Truth {
   std::vector<Eigen::Vector3d> nominal_mm, true_mm;  ///< material points of all followed contours
@@ -36,11 +37,12 @@ Truth truth_of(const PosePart& part) {
   return truth;
 }
 
-/// Mean distance of the contours carried by a motion true_from_cad from the true curves.
-double off_mm(const Truth& truth, const RigidMotion& true_from_cad) {
+/// Mean distance of the carried contours from the true curves.
+template <typename Carry>
+double off_mm(const Truth& truth, Carry&& true_from_cad) {
   double sum_mm = 0.0;
   for (const Eigen::Vector3d& p : truth.nominal_mm)
-    sum_mm += nearest_contour(truth.curves, true_from_cad * p).foot.distance_mm;
+    sum_mm += nearest_contour(truth.curves, true_from_cad(p)).foot.distance_mm;
   return sum_mm / static_cast<double>(truth.nominal_mm.size());
 }
 
@@ -58,6 +60,42 @@ bool same_side(const Truth& truth, const RigidMotion& true_from_cad) {
 synthetic::ScanOptions scan_options(const PosePart& part, synthetic::ScanOptions options) {
   if (part.whole_face) options.band_mm = 0.0;
   return options;
+}
+
+/// One scan and what is known about it.
+struct Sampled {
+  const PosePart& part;
+  Scan scan;
+  PrepareOptions preparing;
+  Truth truth;
+  RigidMotion true_from_scan;
+
+  [[nodiscard]] ScanModel model() const { return prepare_scan(scan, preparing).model; }
+  [[nodiscard]] RigidMotion best_true_from_cad() const {
+    return fit_rigid(truth.nominal_mm, truth.true_mm).to_from;
+  }
+  [[nodiscard]] double off_mm_by(const RigidMotion& scan_from_cad) const {
+    return off_mm(truth, [&](const Eigen::Vector3d& p) { return true_from_scan * scan_from_cad * p; });
+  }
+};
+
+/// What the whole job makes of the pose, where the rigid stage leaves much.
+PoseVerdict verdict_by_field(const Sampled& scan, RegistrationOptions options) {
+  options.method = RegistrationMethod::kSurface;
+  ScanModel model = scan.model();
+  const Registration found = register_part(scan.part.cad, model, options);
+  if (!found.usable() || !found.refusals.empty()) return PoseVerdict::kRefused;
+  const double path_off_mm = off_mm(scan.truth, [&](const Eigen::Vector3d& p) {
+    return scan.true_from_scan * found.field->map(p).p_scan_mm;
+  });
+  return path_off_mm <= kOfField * model.spacing_mm ? PoseVerdict::kRight : PoseVerdict::kWrong;
+}
+
+PoseVerdict verdict_of(const Sampled& scan, const RigidMotion& scan_from_cad, double spacing_mm,
+                       const PoseTrial& trial, const RegistrationOptions& options) {
+  if (!same_side(scan.truth, scan.true_from_scan * scan_from_cad)) return PoseVerdict::kWrong;
+  if (trial.off_mm <= trial.best_off_mm + kOfBest * spacing_mm) return PoseVerdict::kRight;
+  return verdict_by_field(scan, options);
 }
 
 }  // namespace
@@ -86,11 +124,11 @@ std::vector<PoseScene> pose_scenes() {
 PoseTrial try_pose(const PosePart& part, const PoseScene& scene, std::uint64_t seed, int threads) {
   const synthetic::SyntheticScan sampled =
       synthetic::sample_scan(*part.shape, scan_options(part, scene.scan), seed);
-  Scan scan;
-  scan.cloud = clean(sampled.cloud(), {}).cloud;
-  PrepareOptions preparing;
-  preparing.threads = preparing.contour.threads = threads;
-  ScanModel model = prepare_scan(scan, preparing).model;
+  Sampled known{part, {}, {}, truth_of(part), {}};
+  known.scan.cloud = clean(sampled.cloud(), {}).cloud;
+  known.preparing.threads = known.preparing.contour.threads = threads;
+  known.true_from_scan = sampled.scan_from_cad.inverse() * Eigen::Translation3d(known.scan.cloud.offset_mm);
+  ScanModel model = known.model();
 
   RegistrationOptions options;
   options.method = RegistrationMethod::kRigid;
@@ -111,15 +149,11 @@ PoseTrial try_pose(const PosePart& part, const PoseScene& scene, std::uint64_t s
     trial.reason = found.refusals.empty() ? found.rigid.reason : found.refusals.front();
     return trial;
   }
-  const Truth truth = truth_of(part);
-  const RigidMotion true_from_cad = sampled.scan_from_cad.inverse() *
-                                    Eigen::Translation3d(scan.cloud.offset_mm) * found.rigid.scan_from_cad;
-  trial.off_mm = off_mm(truth, true_from_cad);
-  trial.best_off_mm = off_mm(truth, fit_rigid(truth.nominal_mm, truth.true_mm).to_from);
-  const double allowed_mm = kAllowedOfBest * trial.best_off_mm +
-                            std::max(kAllowedOfSize * part.size_mm(), kAllowedOfSpacing * model.spacing_mm);
-  const bool right = trial.off_mm <= allowed_mm && same_side(truth, true_from_cad);
-  trial.verdict = right ? PoseVerdict::kRight : PoseVerdict::kWrong;
+  trial.off_mm = known.off_mm_by(found.rigid.scan_from_cad);
+  trial.best_off_mm =
+      off_mm(known.truth, [best = known.best_true_from_cad()](const Eigen::Vector3d& p) { return best * p; });
+  trial.verdict = verdict_of(known, found.rigid.scan_from_cad, model.spacing_mm, trial, options);
+  if (trial.verdict == PoseVerdict::kRefused) trial.reason = "the field refuses what the rigid stage leaves";
   return trial;
 }
 

@@ -30,10 +30,11 @@ struct PoseTrial {
   double search_ms = 0.0;
 };
 
-/// Scans the part in a random pose, searches it, and compares with the truth. Right: the contours carried by
-/// the rigid stage lie as near to the true curves as by the best rigid motion there is (material points
-/// known), but for half of that and 1.5 % of the contour's size or three quarters of a
-/// point spacing, with the same side up.
+/// Scans the part in a random pose, searches it, and compares with the truth. Right: the same side is up, and
+/// the rigid stage from the pose found ends within half a point spacing of what the best rigid motion there
+/// is leaves (material points known); where it ends farther off, the whole job with the surface field
+/// decides: accepted, with its path within a quarter of a spacing of the true curves, is right; accepted
+/// beyond that is wrong; refused is refused.
 [[nodiscard]] PoseTrial try_pose(const PosePart& part, const PoseScene& scene, std::uint64_t seed,
                                  int threads);
 
