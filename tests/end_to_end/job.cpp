@@ -76,22 +76,6 @@ synthetic::ScanOptions usual_options(const std::string& part) {
   return options;
 }
 
-std::string double_ply(const synthetic::SyntheticScan& scan, const Vector3d& shift_mm) {
-  std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(scan.points_mm.size()) + "\n";
-  for (const char* name : {"x", "y", "z", "nx", "ny", "nz"})
-    text += std::string("property double ") + name + "\n";
-  text += "end_header\n";
-  char line[240];
-  for (std::size_t i = 0; i < scan.points_mm.size(); ++i) {
-    const Vector3d p = (scan.points_mm[i] * 1024.0).array().round().matrix() / 1024.0 + shift_mm;
-    const Vector3d& n = scan.normals[i];
-    std::snprintf(line, sizeof line, "%.10f %.10f %.10f %.7f %.7f %.7f\n", p.x(), p.y(), p.z(), n.x(), n.y(),
-                  n.z());
-    text += line;
-  }
-  return text;
-}
-
 Vector3d Table::triple(std::size_t row, std::size_t column) const {
   const std::vector<std::string>& cells = rows.at(row);
   return {std::stod(cells.at(column)), std::stod(cells.at(column + 1)), std::stod(cells.at(column + 2))};

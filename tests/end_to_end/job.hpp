@@ -42,10 +42,6 @@ class Job {
 /// As a finite-element part is usually scanned; the porthole with more points than the paper's 1,500.
 [[nodiscard]] synthetic::ScanOptions usual_options(const std::string& part);
 
-/// The same points and normals as ASCII PLY in double, at p + shift; rounded to 1/1024 mm before the shift,
-/// so that float32 about any sensible offset holds them exactly and the shift alone is tested.
-[[nodiscard]] std::string double_ply(const synthetic::SyntheticScan& scan, const Eigen::Vector3d& shift_mm);
-
 /// A CSV as a stranger would read it: one comment line at most, header, numbers and words split at commas.
 struct Table {
   std::string comment, header;

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "fixtures/synthetic/write.hpp"
 #include "tests/end_to_end/job.hpp"
 
 namespace arris {
@@ -17,6 +18,9 @@ using testing::Job;
 using testing::Ran;
 using testing::Table;
 using testing::text_of;
+
+/// Float about any sensible offset holds points on this grid exactly, so the shift alone is tested.
+constexpr double kFloatGridMm = 1.0 / 1024.0;
 
 bool processed(const Ran& ran) {
   return ran.code == 0 || ran.code == 4 || ran.code == 7;
@@ -49,7 +53,7 @@ TEST(ResultHash, StandsInEveryFile) {
 TEST(ResultHash, ChangesWithOneByteOfAnyInput) {
   const Job job("fe/sheet");
   const synthetic::SyntheticScan scan = testing::fe_scan("sheet", testing::usual_options("sheet"), 31);
-  job.put("scan.ply", testing::double_ply(scan, Vector3d::Zero()));
+  job.put("scan.ply", synthetic::double_ply(scan, Vector3d::Zero(), kFloatGridMm));
   job.replace("scan.ply", "format ascii 1.0\n", "format ascii 1.0\ncomment a\n");
   job.replace("cad.stl", text_of(job.file("cad.stl")).substr(0, 8), "drawing ");
   ASSERT_TRUE(processed(job.run("scan.ply", "out")));
@@ -106,8 +110,8 @@ TEST(Metamorphic, ScanMovedTenMetresMovesThePathAlike) {
   const Job job("fe/porthole");
   job.replace("recipe.toml", "[cell]\nfile = \"cell.toml\"\n", "");  // beyond the robot's reach
   const synthetic::SyntheticScan scan = testing::fe_scan("porthole", testing::usual_options("porthole"), 35);
-  job.put("near.ply", testing::double_ply(scan, Vector3d::Zero()));
-  job.put("far.ply", testing::double_ply(scan, shift_mm));
+  job.put("near.ply", synthetic::double_ply(scan, Vector3d::Zero(), kFloatGridMm));
+  job.put("far.ply", synthetic::double_ply(scan, shift_mm, kFloatGridMm));
   ASSERT_TRUE(processed(job.run("near.ply", "near")));
   ASSERT_TRUE(processed(job.run("far.ply", "far")));
   EXPECT_FALSE(job.names("near").contains("program.mod")) << "without a cell";

@@ -52,13 +52,17 @@ std::vector<Eigen::Vector3d> contour_points(const CadModel& cad, double step_mm)
   return points;
 }
 
-PreparedScan prepare(const BenchPart& part, const PointCloud& cloud) {
+PreparedScan prepare(const Recipe& recipe, int threads, const PointCloud& cloud) {
   Scan scan;
-  scan.cloud = clean(cloud, clean_options(part.recipe, part.threads)).cloud;
+  scan.cloud = clean(cloud, clean_options(recipe, threads)).cloud;
   PrepareOptions options;
-  options.contour = contour_options(part.recipe, part.threads);
-  options.threads = part.threads;
+  options.contour = contour_options(recipe, threads);
+  options.threads = threads;
   return prepare_scan(scan, options);
+}
+
+PreparedScan prepare(const BenchPart& part, const PointCloud& cloud) {
+  return prepare(part.recipe, part.threads, cloud);
 }
 
 Correction correct_path(const BenchPart& part, const Registration& registration) {

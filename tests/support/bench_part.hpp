@@ -31,6 +31,7 @@ struct BenchPart {
 [[nodiscard]] std::vector<Eigen::Vector3d> contour_points(const CadModel& cad, double step_mm);
 
 /// The stages of `arris run`, from points in memory to the corrected path.
+[[nodiscard]] PreparedScan prepare(const Recipe& recipe, int threads, const PointCloud& cloud);
 [[nodiscard]] PreparedScan prepare(const BenchPart& part, const PointCloud& cloud);
 [[nodiscard]] Correction correct_path(const BenchPart& part, const Registration& registration);
 

@@ -33,7 +33,9 @@ bool equally_far_from_the_middle(const std::vector<Eigen::Vector3d>& points) {
 
 }  // namespace
 
-Truth::Truth(const synthetic::Part& part) : edge_(part.followed_edge(kStepMm)) {
+Truth::Truth(const synthetic::Part& part) : Truth(part.followed_edge(kStepMm)) {}
+
+Truth::Truth(std::vector<synthetic::EdgePoint> edge) : edge_(std::move(edge)) {
   for (const synthetic::EdgeRange& range : synthetic::contour_ranges(edge_))
     loops_.push_back(
         {range, {positions(edge_, range, false), kCellMm}, {positions(edge_, range, true), kCellMm}});

@@ -32,6 +32,8 @@ struct RowError {
 class Truth {
  public:
   explicit Truth(const synthetic::Part& part);
+  /// Contours one after the other, at equal steps.
+  explicit Truth(std::vector<synthetic::EdgePoint> edge);
 
   /// Row i of the nominal path and where it was carried, both in the CAD frame (the scan's true pose undone);
   /// each against the contour that its nominal place is nearest to.

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "acquisition/geometry/rigid_fit.hpp"
-#include "cli/recipe_options.hpp"
 #include "tests/bench/accuracy/pcl_icp.hpp"
+#include "tests/support/one_run.hpp"
 
 namespace arris::bench {
 namespace {
@@ -67,12 +67,7 @@ class Comparison {
   }
 
  private:
-  /// The recipe's, and a scanner that was calibrated: the synthetic one shows edges where they are.
-  RegistrationOptions options() const {
-    RegistrationOptions chosen = registration_options(part_.recipe, part_.threads);
-    chosen.edge.scanner = chosen.surface.scanner = {0.0, 0.0};
-    return chosen;
-  }
+  RegistrationOptions options() const { return calibrated_options(part_.recipe, part_.threads); }
   PathError error_of(const Points& path_local_mm) const {
     return part_.truth.error(
         part_.path_mm, carried(path_local_mm, [&](const Eigen::Vector3d& p) { return cad_from_local_ * p; }));

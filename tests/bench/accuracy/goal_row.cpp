@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 namespace arris::bench {
 
@@ -14,6 +15,17 @@ std::string goal_table(const std::vector<GoalRow>& rows) {
     text += fmt::format("| {} | {} | {} | {} | {} | {} of {} | {} | {} |\n", row.what, row.part, row.goal,
                         row.reached, row.worst, row.within, row.scans, row.refused,
                         row.met ? "met" : "**missed**");
+  return text;
+}
+
+std::string notes_list(const std::vector<GoalRow>& rows) {
+  std::string text;
+  for (const GoalRow& row : rows) {
+    std::map<std::string, int> counts;
+    for (const std::string& note : row.notes) ++counts[note];
+    for (const auto& [note, count] : counts)
+      text += fmt::format("- {}, {}, {} of {}: {}\n", row.what, row.part, count, row.scans, note);
+  }
   return text;
 }
 

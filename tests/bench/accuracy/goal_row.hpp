@@ -8,15 +8,19 @@ namespace arris::bench {
 /// One stated figure and what was reached.
 struct GoalRow {
   std::string what, part;
-  std::string goal, reached, worst;  ///< `worst`: the worst accepted scan
+  std::string goal = {}, reached = {}, worst = {};  ///< `worst`: the worst accepted scan
   std::size_t scans = 0;
   std::size_t within = 0;   ///< scans that reach the figure by themselves; a refused one does not
   std::size_t refused = 0;  ///< scans refused that should not be (accepted that should not be)
   bool met = false;
+  std::vector<std::string> notes = {};  ///< of refused scans: the reasons
 };
 
 /// The rows as Markdown, with a heading line.
 [[nodiscard]] std::string goal_table(const std::vector<GoalRow>& rows);
+
+/// The notes of the rows, each distinct one once, as a list; empty without any.
+[[nodiscard]] std::string notes_list(const std::vector<GoalRow>& rows);
 
 /// A mean and a peak error, in mm.
 struct MeanMax {

@@ -6,13 +6,17 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "acquisition/geometry/parallel_for.hpp"
 #include "acquisition/types/error.hpp"
 #include "tests/bench/accuracy/case.hpp"
 #include "tests/bench/accuracy/part_goals.hpp"
+#include "tests/bench/accuracy/part_pictures.hpp"
+#include "tests/bench/accuracy/special.hpp"
 #include "tests/bench/accuracy/table.hpp"
 #include "tests/bench/accuracy/times.hpp"
 #include "tests/support/bench_program.hpp"
@@ -23,33 +27,44 @@ using namespace arris::bench;  // NOLINT: one small program
 
 const char kUsage[] =
     "bench_accuracy [--fixtures fixtures/fe] [--seeds 20] [--rounds 15] [--threads 2] [--out FILE.md]\n"
-    "               [--part NAME] [--only WORD]\n"
-    "--part porthole|nosecone|sheet|bracket|duct and --only (one way to scan: clean, fine, coarse, rows, "
-    "walls,\n"
-    "missing, clutter, hard, dense; or times) take a quick look: the page is left as it is.\n";
+    "               [--images FOLDER] [--part NAME] [--only WORD]\n"
+    "--part porthole|nosecone|sheet|bracket|duct and --only take a quick look: the page is left as it is.\n"
+    "--only: a way to scan the parts (clean, fine, coarse, rows, walls, missing, clutter, hard, dense), or "
+    "cut,\n"
+    "size, faces, far, times, pictures.\n";
+const char kImagesOnPage[] = "images/results";
 
 struct Arguments {
-  std::filesystem::path fixtures, out;
+  std::filesystem::path fixtures, out, images;
   int seeds = 0, rounds = 0, threads = 0;
   std::string part, only;
   [[nodiscard]] bool is_whole() const { return part.empty() && only.empty(); }
   [[nodiscard]] bool wants(const std::string& word) const { return only.empty() || only == word; }
 };
 
+/// Rows that are no scans of the parts as they are, by the word of --only.
+using SpecialRows = std::vector<GoalRow> (*)(const SpecialSetup&);
+std::vector<std::pair<std::string, SpecialRows>> special_rows() {
+  return {{"cut", cut_rows}, {"size", size_rows}, {"faces", face_rows}, {"far", far_rows}};
+}
+
 /// A misspelt word would measure nothing.
 void check_only(const std::string& only) {
-  std::vector<std::string> known = {"", "times"};
+  std::vector<std::string> known = {"", "times", "pictures"};
+  for (const auto& [word, rows] : special_rows()) known.push_back(word);
   for (const BenchCase& one : bench_cases()) known.push_back(one.word);
   if (std::find(known.begin(), known.end(), only) == known.end())
     throw arris::Error(arris::Fault::kUsage, "no case " + only + "\n" + kUsage);
 }
 
 Arguments parse(int argc, char** argv) {
-  const Words words(argc, argv, kUsage,
-                    {"--fixtures", "--out", "--part", "--only", "--seeds", "--rounds", "--threads"});
+  const Words words(
+      argc, argv, kUsage,
+      {"--fixtures", "--out", "--images", "--part", "--only", "--seeds", "--rounds", "--threads"});
   Arguments arguments;
   arguments.fixtures = words.text("--fixtures", "fixtures/fe");
   arguments.out = words.text("--out");
+  arguments.images = words.text("--images");
   arguments.part = words.text("--part");
   arguments.only = words.text("--only");
   check_only(arguments.only);
@@ -88,23 +103,61 @@ std::string parts_text(const std::vector<CaseResult>& results) {
   return text;
 }
 
-void run(const Arguments& arguments) {
+/// What is measured, part by part.
+struct Measured {
   std::vector<CaseResult> results;
   std::vector<PartTimes> times;
+  std::vector<Figure> figures;
+};
+
+Measured measure_parts(const Arguments& arguments) {
+  Measured measured;
   for (const std::string name : {"porthole", "nosecone", "sheet", "bracket", "duct"}) {
     if (!arguments.part.empty() && arguments.part != name) continue;
     const BenchPart part(arguments.fixtures / name, 1);
     for (const BenchCase& bench_case : bench_cases())
-      if (arguments.wants(bench_case.word)) results.push_back(run_case(part, bench_case, arguments));
+      if (arguments.wants(bench_case.word)) measured.results.push_back(run_case(part, bench_case, arguments));
+    if (arguments.wants("pictures"))
+      for (Figure& figure : part_pictures(part)) measured.figures.push_back(std::move(figure));
     if (arguments.rounds > 0 && arguments.wants("times"))
-      times.push_back(
+      measured.times.push_back(
           measure_times(BenchPart(arguments.fixtures / name, arguments.threads), arguments.rounds));
   }
-  std::string text = "### What it must reach\n\n" + goal_table(part_goals(results)) + "\n";
-  if (!times.empty())
-    text += "### Times\n\n" + times_table(times, arguments.rounds, arguments.threads) + "\n";
-  if (!results.empty()) text += parts_text(results);
+  return measured;
+}
+
+std::vector<GoalRow> measure_special(const Arguments& arguments) {
+  std::vector<GoalRow> all;
+  if (!arguments.part.empty()) return all;
+  for (const auto& [word, rows_of] : special_rows()) {
+    if (!arguments.wants(word)) continue;
+    std::vector<GoalRow> rows = rows_of({arguments.fixtures, arguments.seeds, arguments.threads});
+    std::cerr << goal_table(rows) << std::flush;
+    std::move(rows.begin(), rows.end(), std::back_inserter(all));
+  }
+  return all;
+}
+
+std::string document(const Measured& measured, const std::vector<GoalRow>& special,
+                     const Arguments& arguments) {
+  std::vector<GoalRow> goals = part_goals(measured.results);
+  goals.insert(goals.end(), special.begin(), special.end());
+  std::string text = "### What it must reach\n\n" + goal_table(goals) + "\n";
+  if (const std::string notes = notes_list(goals); !notes.empty())
+    text += "Refused scans of the rows that are no scans of the parts as they are:\n\n" + notes + "\n";
+  if (!measured.figures.empty())
+    text += "### The parts and their errors\n\n" + pictures_text(measured.figures, kImagesOnPage) + "\n";
+  if (!measured.times.empty())
+    text += "### Times\n\n" + times_table(measured.times, arguments.rounds, arguments.threads) + "\n";
+  if (!measured.results.empty()) text += parts_text(measured.results);
+  return text;
+}
+
+void run(const Arguments& arguments) {
+  const Measured measured = measure_parts(arguments);
+  const std::string text = document(measured, measure_special(arguments), arguments);
   std::cout << text;
+  if (!arguments.images.empty()) write_figures(measured.figures, arguments.images);
   if (!arguments.out.empty() && arguments.is_whole()) put_between_markers(arguments.out, text);
 }
 

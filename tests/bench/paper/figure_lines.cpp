@@ -5,8 +5,6 @@
 namespace arris::bench {
 namespace {
 
-constexpr report::Rgb kEdge{34, 34, 34};
-
 double value_of(const RowError& row, Along part) {
   if (part == Along::kDistance) return row.distance_mm;
   return part == Along::kNormal ? row.normal_mm : row.across_mm;
@@ -43,19 +41,6 @@ PartLine exaggerated_line(const Truth& truth, const NamedPath& path, double fact
   for (std::size_t i = 0; i < rows.size(); ++i)
     line.points_mm.emplace_back(rows[i].foot_mm + factor * (path.path.tips_mm[i] - rows[i].foot_mm));
   return line;
-}
-
-PartLine edge_line(const Truth& truth, bool deformed, const std::string& name) {
-  PartLine line{{name, {kEdge, 3.0, {}, 1.0}, std::nullopt, false}, {}, true};
-  for (const synthetic::EdgePoint& e : truth.edge())
-    line.points_mm.push_back(deformed ? e.true_mm : e.nominal_mm);
-  return line;
-}
-
-Eigen::Vector3d mean_edge_normal(const Truth& truth) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const synthetic::EdgePoint& e : truth.edge()) sum += e.nominal_normal;
-  return sum.normalized();
 }
 
 }  // namespace arris::bench

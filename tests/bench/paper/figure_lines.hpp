@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "tests/bench/paper/methods.hpp"
-#include "tests/bench/paper/part_picture.hpp"
-#include "tests/bench/paper/plot.hpp"
+#include "tests/bench/pictures/part_picture.hpp"
+#include "tests/bench/pictures/plot.hpp"
 
 namespace arris::bench {
 
@@ -27,9 +27,5 @@ enum class Along { kDistance, kNormal, kAcross };
 /// The path drawn `factor` times as far from its feet on the edge as it is.
 [[nodiscard]] PartLine exaggerated_line(const Truth& truth, const NamedPath& path, double factor,
                                         bool deformed);
-
-/// The edge of the part: deformed, or of the drawing.
-[[nodiscard]] PartLine edge_line(const Truth& truth, bool deformed, const std::string& name);
-[[nodiscard]] Eigen::Vector3d mean_edge_normal(const Truth& truth);
 
 }  // namespace arris::bench

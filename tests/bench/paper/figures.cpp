@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
-#include "acquisition/geometry/rigid_fit.hpp"
-#include "acquisition/types/error.hpp"
 #include "tests/bench/paper/figure_lines.hpp"
+#include "tests/bench/pictures/bent_part.hpp"
 #include "tests/support/released.hpp"
 
 namespace arris::bench {
@@ -20,29 +18,6 @@ constexpr std::size_t kAxisEvery = 6;
 constexpr report::Rgb kSegments[] = {{0, 90, 170}, {214, 98, 28}};
 const std::string kArc = "arc length along the nominal contour, mm";
 
-/// Displacement along the normal beyond the best rigid motion of the opening, one value a triangle.
-std::vector<float> bending_mm(const BenchPart& part, const TriangleMesh& nominal, const TriangleMesh& bent) {
-  std::vector<Eigen::Vector3d> from, to;
-  for (const synthetic::EdgePoint& e : part.truth.edge()) {
-    from.push_back(e.nominal_mm);
-    to.push_back(e.true_mm);
-  }
-  const RigidMotion motion = fit_rigid(from, to).to_from;
-  std::vector<float> values;
-  for (const auto& t : nominal.triangles) {
-    std::array<Eigen::Vector3d, 3> carried;
-    Eigen::Vector3d shift = Eigen::Vector3d::Zero();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto v = static_cast<std::size_t>(t[k]);
-      carried[k] = motion * nominal.vertices_mm[v];
-      shift += (bent.vertices_mm[v] - carried[k]) / 3.0;
-    }
-    const Eigen::Vector3d normal = (carried[1] - carried[0]).cross(carried[2] - carried[0]).normalized();
-    values.push_back(static_cast<float>(shift.dot(normal)));
-  }
-  return values;
-}
-
 PartPicture blank(const BenchPart& part, const std::string& title, const std::string& subtitle) {
   PartPicture picture;
   picture.title = title;
@@ -52,17 +27,9 @@ PartPicture blank(const BenchPart& part, const std::string& title, const std::st
 }
 
 Figure deformation(const BenchPart& part) {
-  PartPicture picture =
-      blank(part, "Figure 2: the clamped porthole panel and the contour of the drawing",
-            "colour: displacement along the normal beyond the best rigid motion of the edge");
-  const TriangleMesh nominal = part.fe.mesh(kMeshMm, false);
-  picture.mesh = part.fe.mesh(kMeshMm, true);
-  picture.value_mm = bending_mm(part, nominal, picture.mesh);
-  picture.shows_whole_mesh = true;
-  picture.lines.push_back(edge_line(part.truth, false, "contour of the drawing, true pose"));
-  picture.lines.back().item.stroke.dash_px = {12.0, 7.0};
-  picture.lines.push_back(edge_line(part.truth, true, "edge of the clamped part"));
-  return {"figure-02-deformation.png", part_png(picture)};
+  return {"figure-02-deformation.png",
+          part_png(bent_part_picture(
+              part, "Figure 2: the clamped porthole panel and the contour of the drawing", kMeshMm))};
 }
 
 /// Heights of the paths over the rigid one along the true normal: what a model of the bending must say.
@@ -135,7 +102,7 @@ Figure registered(const BenchPart& part, const std::vector<NamedPath>& paths, do
       part, title,
       fmt::format("distances from the true edge drawn {:.0f} times as large; usual scan, seed 1", factor));
   picture.mesh = part.fe.mesh(mesh_mm, true);
-  picture.lines.push_back(edge_line(part.truth, true, "true edge"));
+  add_edge(picture, part.truth, true, "true edge");
   for (const NamedPath& path : paths)
     picture.lines.push_back(exaggerated_line(part.truth, path, factor, true));
   return {file, part_png(picture)};
@@ -149,7 +116,7 @@ Figure measured(const BenchPart& part, const synthetic::SyntheticScan& scan, con
   picture.shows_whole_mesh = true;
   const RigidMotion cad_from_scan = scan.scan_from_cad.inverse();
   for (const Eigen::Vector3d& p : scan.points_mm) picture.points_mm.emplace_back(cad_from_scan * p);
-  picture.lines.push_back(edge_line(part.truth, false, "contour of the drawing"));
+  add_edge(picture, part.truth, false, "contour of the drawing");
   return {"figure-07-scan.png", part_png(picture)};
 }
 
@@ -242,7 +209,7 @@ std::vector<Figure> release_figures(const BenchPart& part) {
                         factor));
   picture.mesh = part.fe.mesh(kMeshMm, false);
   picture.is_oblique = false;
-  picture.lines.push_back(edge_line(part.truth, false, "drawing"));
+  add_edge(picture, part.truth, false, "drawing");
   Plot plot{"Figure 14: error of the released contour, " + part.fe.name(),
             "in the surface, across the contour, positive towards the void; usual scan, seed 1",
             kArc,
@@ -255,16 +222,6 @@ std::vector<Figure> release_figures(const BenchPart& part) {
   }
   return {{"figure-13-" + part.fe.name() + "-released.png", part_png(picture)},
           {"figure-14-" + part.fe.name() + "-error.png", plot_png(plot)}};
-}
-
-void write_figures(const std::vector<Figure>& figures, const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
-  for (const Figure& figure : figures) {
-    std::ofstream out(folder / figure.file, std::ios::binary | std::ios::trunc);
-    out << figure.png;
-    out.close();
-    if (!out) throw Error(Fault::kInput, "cannot write " + (folder / figure.file).string());
-  }
 }
 
 }  // namespace arris::bench

@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/clean.hpp"
-#include "cli/prepare.hpp"
-#include "cli/recipe_options.hpp"
-#include "registration/registration.hpp"
+#include "tests/support/bench_part.hpp"
+#include "tests/support/one_run.hpp"
 
 namespace arris::bench {
 namespace {
 
 constexpr double kSpacingMm = 0.5, kPathStepMm = 2.0,
                  kCadEdgeMm = 4.0;  // coarser, the arcs of small corners fold triangles
-constexpr double kPoseTurnRad = 0.09, kPoseShiftMm = 10.0;
 
 synthetic::ScanOptions scan_options(const StudyPart& study, StudyCase study_case) {
   synthetic::ScanOptions options;
@@ -28,17 +25,6 @@ synthetic::ScanOptions scan_options(const StudyPart& study, StudyCase study_case
   }
   if (study_case == StudyCase::kBurrs) options.burr_ratio = 0.1;
   return options;
-}
-
-/// The pose as a cell knows it: a half-turned hole looks the same, and finding poses is another study's
-/// matter.
-RigidMotion near_pose(const RigidMotion& local_from_cad, const CadModel& cad, std::uint64_t seed) {
-  synthetic::Random random(seed + 500000);
-  const Eigen::Vector3d about_mm = cad.contours[0].point_mm(0.0);
-  const Eigen::AngleAxisd turn(random.uniform(0.0, kPoseTurnRad), random.direction());
-  const Eigen::Vector3d shift_mm = random.uniform(0.0, kPoseShiftMm) * random.direction();
-  return local_from_cad *
-         (Eigen::Translation3d(about_mm + shift_mm) * turn * Eigen::Translation3d(-about_mm));
 }
 
 CadModel drawing_of(const synthetic::Part& part) {
@@ -104,17 +90,13 @@ StudyOutcome study_scan(const StudyPart& study, StudyCase study_case, std::uint6
   const NominalRows path = path_on(cad.contours[0]);
   Recipe recipe;  // what the program does when a recipe names none of registration's options
   recipe.part.thickness_mm = study.part->thickness_mm();
-  Scan measured;
-  measured.cloud = clean(scan.cloud(), clean_options(recipe, threads)).cloud;
-  const RigidMotion cad_from_local =
-      scan.scan_from_cad.inverse() * Eigen::Translation3d(measured.cloud.offset_mm);
-  PrepareOptions prepare;
-  prepare.contour = contour_options(recipe, threads);
-  prepare.threads = threads;
-  PreparedScan prepared = prepare_scan(measured, prepare);
-  RegistrationOptions options = registration_options(recipe, threads);
-  options.edge.scanner = options.surface.scanner = {0.0, 0.0};  // the synthetic scanner is calibrated
-  options.coarse.initial_scan_from_cad = near_pose(cad_from_local.inverse(), cad, seed);
+  const PointCloud cloud = scan.cloud();
+  const RigidMotion cad_from_local = scan.scan_from_cad.inverse() * Eigen::Translation3d(cloud.offset_mm);
+  PreparedScan prepared = prepare(recipe, threads, cloud);
+  RegistrationOptions options = calibrated_options(recipe, threads);
+  // A half-turned hole looks the same, and finding poses is another study's matter.
+  options.coarse.initial_scan_from_cad =
+      near_pose(cad_from_local.inverse(), cad.contours[0].point_mm(0.0), seed);
   const Registration found = register_part(cad, prepared.model, options);
   outcome.refusals = found.refusals;
   outcome.has_path = found.usable();

@@ -1,4 +1,4 @@
-#include "tests/bench/paper/plot.hpp"
+#include "tests/bench/pictures/plot.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -108,7 +108,7 @@ std::string plot_png(const Plot& plot) {
     std::vector<Eigen::Vector2d> pixels;
     for (const Eigen::Vector2d& p : line.points_mm) pixels.emplace_back(axes.x(p.x()), axes.y(p.y()));
     report::draw_line(canvas, pixels, false, item);
-    legend.push_back(item);
+    if (!item.text.empty()) legend.push_back(item);
   }
   report::draw_panel_frame(canvas, kPanel);
   draw_legend_rows(canvas, legend, kPanel.y + kPanel.height + 112.0);

@@ -1,7 +1,7 @@
-#include "tests/bench/paper/part_picture.hpp"
+#include "tests/bench/pictures/part_picture.hpp"
 
 #include "report/scene.hpp"
-#include "tests/bench/paper/plot.hpp"
+#include "tests/bench/pictures/plot.hpp"
 
 namespace arris::bench {
 namespace {

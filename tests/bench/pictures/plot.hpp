@@ -18,7 +18,7 @@ inline constexpr int kLegendRowPx = 36;
 void draw_legend_rows(report::Canvas& canvas, const std::vector<report::LegendItem>& items, double y);
 
 struct PlotLine {
-  std::string name;
+  std::string name;  ///< empty: not in the legend
   report::Rgb colour;
   std::vector<Eigen::Vector2d> points_mm;  ///< x ascending
   bool is_dashed = false;
