@@ -12,6 +12,8 @@ namespace {
 constexpr double kStationMm = 2.0;
 constexpr double kTauFloorMm = 0.03;
 constexpr double kClaimTaus = 3.0;  // farther inside a point pulls nothing, farther outside it is let go
+constexpr double kSitePoints = 45.0, kSiteBlurs = 5.0;  // farther inside a point bounds nothing
+constexpr double kDensePerMm = 300.0;  // so many points within a mm of an edge: its mode and mean are one
 constexpr double kNearRatio = 0.2, kStrayHeightMm = 2.0;  // flyers of an edge stand above and below it
 constexpr double kUnseenStrays = 0.5;                     // none seen is no proof that there are none
 constexpr double kMostStrayRatio = 0.05;                  // early rounds leave material beyond the edge
@@ -46,6 +48,7 @@ void EdgeStrips::update(const std::vector<SurfacePair>& pairs, const std::vector
   }
   points_.assign(pairs.size(), {});
   stray_.resize(pairs.size(), 0);
+  messages_.resize(pairs.size());
   parallel_for(pairs.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Point& point = points_[i];
@@ -88,12 +91,15 @@ void EdgeStrips::set_row(const Point& point, SurfaceSystem::Row& row) const {
     row.direction.push_back(-w[BasisRow::kValue] * edge.inward[point.foot.station]);
 }
 
+double EdgeStrips::points_per_mm(const Edge& edge) {
+  return std::max(1e-9, edge.bins.density_per_mm2 * edge.curve->length_mm());
+}
+
 /// An edge that so many more points show is known that much better.
 std::vector<EdgeSupport> EdgeStrips::supports_at(double tau_mm, double stray_ratio) const {
   if (edges_.empty()) return {};
   std::vector<double> points_per_mm;
-  for (const Edge& edge : edges_)
-    points_per_mm.push_back(std::max(1e-9, edge.bins.density_per_mm2 * edge.curve->length_mm()));
+  for (const Edge& edge : edges_) points_per_mm.push_back(this->points_per_mm(edge));
   const double fewest = *std::min_element(points_per_mm.begin(), points_per_mm.end());
   std::vector<EdgeSupport> supports;
   for (const double points : points_per_mm)
@@ -143,11 +149,49 @@ void EdgeStrips::add(std::size_t begin, std::size_t end, const std::vector<doubl
     const double inside = inside_mm(p, offset_mm);
     if (stray_[i]) continue;
     const EdgeSupport& support = supports[p.edge];
-    const EdgeSupport::Pull pull = support.at(inside);
-    if (pull.slope_per_mm == 0.0 && pull.curvature_per_mm2 == 0.0) continue;
+    double slope_per_mm = 0.0, curvature_per_mm2 = 0.0;
+    if (messages_[i]) {
+      curvature_per_mm2 = messages_[i]->precision_per_mm2;
+      slope_per_mm = messages_[i]->slope_at(inside) + p.weight * support.density_pull_per_mm(inside);
+    } else {
+      const EdgeSupport::Pull pull = support.at(inside);
+      slope_per_mm = p.weight * pull.slope_per_mm;
+      curvature_per_mm2 = p.weight * pull.curvature_per_mm2;
+    }
+    if (slope_per_mm == 0.0 && curvature_per_mm2 == 0.0) continue;
     set_row(p, row);
-    system.add(row, p.weight * pull.slope_per_mm, p.weight * pull.curvature_per_mm2);
+    system.add(row, slope_per_mm, curvature_per_mm2);
   }
+}
+
+std::vector<EdgeSite> EdgeStrips::sites(const std::vector<double>& offset_mm, double tau_mm,
+                                        double stray_ratio) const {
+  const std::vector<EdgeSupport> supports = supports_at(tau_mm, stray_ratio);
+  std::vector<EdgeSite> found;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Point& p = points_[i];
+    if (!counts(i) || stray_[i]) continue;
+    EdgeSite site{i, {}, inside_mm(p, offset_mm), {}};
+    if (messages_[i]) {
+      site.message = *messages_[i];
+    } else {
+      const double points_per_mm = this->points_per_mm(edges_[p.edge]);
+      if (points_per_mm > kDensePerMm) continue;
+      if (site.inside_mm > std::max(kSiteBlurs * kEdgeBlurMm, kSitePoints / points_per_mm)) continue;
+      const EdgeSupport& support = supports[p.edge];
+      const EdgeSupport::Pull pull = support.at(site.inside_mm);
+      site.message.precision_per_mm2 = pull.curvature_per_mm2;
+      site.message.pull_per_mm = pull.curvature_per_mm2 * site.inside_mm - pull.slope_per_mm +
+                                 support.density_pull_per_mm(site.inside_mm);
+    }
+    set_row(p, site.row);
+    found.push_back(std::move(site));
+  }
+  return found;
+}
+
+void EdgeStrips::set_messages(const std::vector<EdgeSite>& sites) {
+  for (const EdgeSite& site : sites) messages_[site.pair] = site.message;
 }
 
 double EdgeStrips::resistance(const SurfaceSystem& system, const Eigen::VectorXd& move,

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "registration/burr_bins.hpp"
 #include "registration/carried_contour.hpp"
 #include "registration/edge_claims.hpp"
+#include "registration/edge_posterior.hpp"
 #include "registration/edge_support.hpp"
 #include "registration/seen_bins.hpp"
 #include "registration/surface_pairs.hpp"
@@ -49,6 +51,12 @@ class EdgeStrips {
   /// material: of what lies level with it farther out than half a strip, or of what stands above and below it
   /// nearer by, whichever is more.
   [[nodiscard]] double stray_ratio() const;
+  /// The points that may bound an edge: near it, and those beyond it. Of an edge so dense that its mode and
+  /// mean are one, none.
+  [[nodiscard]] std::vector<EdgeSite> sites(const std::vector<double>& offset_mm, double tau_mm,
+                                            double stray_ratio) const;
+  /// From now on add() takes these points by their messages.
+  void set_messages(const std::vector<EdgeSite>& sites);
   /// From now on this pair pulls no edge outward.
   void call_stray(std::size_t pair) { stray_[pair] = 1; }
 
@@ -74,6 +82,8 @@ class EdgeStrips {
     BurrBins burrs;
   };
   void find_seen(std::size_t e);
+  /// In a strip 1 mm wide all along the edge.
+  [[nodiscard]] static double points_per_mm(const Edge& edge);
   /// Of each edge, when that with the fewest points is looked at with tau_mm.
   [[nodiscard]] std::vector<EdgeSupport> supports_at(double tau_mm, double stray_ratio) const;
   [[nodiscard]] double void_mm2(double from_mm, double to_mm) const;
@@ -86,7 +96,8 @@ class EdgeStrips {
   double strip_mm_, spacing_mm_, out_mm_;
   double reach_mm_ = 0.0, gate_mm_ = 0.0;  // of the last update
   std::vector<Point> points_;
-  std::vector<char> stray_;  // one a pair
+  std::vector<char> stray_;                           // one a pair
+  std::vector<std::optional<EdgeMessage>> messages_;  // one a pair, or none yet
 };
 
 }  // namespace arris

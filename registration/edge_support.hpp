@@ -28,6 +28,10 @@ struct EdgeSupport {
   [[nodiscard]] double whole_cost(double inside_mm) const {
     return cost(inside_mm) + std::clamp(inside_mm, 0.0, strip_mm) / strip_mm;
   }
+  /// A point's share of its strip's density, which pulls the edge inward.
+  [[nodiscard]] double density_pull_per_mm(double inside_mm) const {
+    return inside_mm > 0.0 && inside_mm <= strip_mm ? 1.0 / strip_mm : 0.0;
+  }
   static double sigmoid(double x) {
     return x >= 0.0 ? 1.0 / (1.0 + std::exp(-x)) : std::exp(x) / (1.0 + std::exp(x));
   }
@@ -37,7 +41,7 @@ struct EdgeSupport {
     const double x = inside_mm / tau_mm - kBalance;
     const double inside = sigmoid(x);
     const double trusted = inside / (inside + stray_ratio);
-    pull.slope_per_mm = -trusted * (1.0 - inside) / tau_mm + (inside_mm > 0.0 ? 1.0 / strip_mm : 0.0);
+    pull.slope_per_mm = -trusted * (1.0 - inside) / tau_mm + density_pull_per_mm(inside_mm);
     const double bend = x < -1e-6 ? std::tanh(0.5 * x) / (2.0 * x) : inside * (1.0 - inside);
     pull.curvature_per_mm2 = trusted * bend / (tau_mm * tau_mm);
     return pull;

@@ -34,12 +34,18 @@ constexpr double kWorthMm = 0.004, kWorthSigmas = 1.0, kWorthRatio = 0.5;  // of
 constexpr double kStiffStrainRatio = 1e-5, kStiffBendPerMm = 1e-6;  // of a part that stays as it is drawn
 constexpr double kRigidMm = 0.015, kRigidSigmas = 0.3, kMostRigidSigmas = 1.3;
 constexpr double kUnknownThicknessWiden = 2.0;  // the mid-surface's strain is then not known
+constexpr int kMostAverages = 8;                // rounds of messages between points and edges
 constexpr std::size_t kParts = 2;               // chunks of a list: each needs a system of its own
 
 double area_mm2_of(const std::vector<SurfaceCell>& cells) {
   double area_mm2 = 0.0;
   for (const SurfaceCell& cell : cells) area_mm2 += cell.area_mm2;
   return area_mm2;
+}
+
+Eigen::MatrixXd inverse_of(const SurfaceSystem& system) {
+  const Eigen::Index n = system.gradient.size();
+  return Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>(system.information).solve(Eigen::MatrixXd::Identity(n, n));
 }
 
 class SurfaceFitter {
@@ -76,8 +82,11 @@ class SurfaceFitter {
     }
     for (int pass = 0; pass < kBurrPasses && fit_.usable() && call_burrs(); ++pass) settle();
     if (fit_.usable()) choose_nodes();
-    // The last call has the covariance of the field that is handed out.
     for (int pass = 1; fit_.usable() && call_strays() && pass < kStrayPasses; ++pass) settle();
+    if (fit_.usable()) {
+      average_edges();
+      fit_.covariance += doubt_mm2_;
+    }
     return std::move(fit_);
   }
 
@@ -166,14 +175,12 @@ class SurfaceFitter {
     return strips_->call_burrs(fit_.offset_mm, strips_->finest_tau_mm(options_.edge_share_ratio));
   }
 
-  /// Covariance of the field as it stands, and of what it may owe to strays; true: some were, and are let go.
+  /// Covariance of the field as it stands, and what it may owe to strays; true: some were, and are let go.
   bool call_strays() {
     look();
     scale_mm_ = kScaleSigmas * fit_.sigma_mm;
     const SurfaceSystem system = assemble();
-    const Eigen::Index n = system.gradient.size();
-    fit_.covariance =
-        Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>(system.information).solve(Eigen::MatrixXd::Identity(n, n));
+    fit_.covariance = inverse_of(system);
     const double ratio = strips_->stray_ratio();
     const std::vector<EdgeClaim> claims = strips_->claims(fit_.offset_mm, tau_mm_, ratio);
     const auto resistance = [&](const Eigen::VectorXd& move, std::span<const std::size_t> without) {
@@ -183,8 +190,25 @@ class SurfaceFitter {
     };
     const ClaimVerdict verdict = judge_claims(system, fit_.covariance, claims, kClaimsNearMm, resistance);
     for (const std::size_t pair : verdict.strays) strips_->call_stray(pair);
-    fit_.covariance += verdict.doubt;
+    doubt_mm2_ = verdict.doubt;
     return !verdict.strays.empty();
+  }
+
+  /// From the mode of the edges' posterior to its mean and covariance.
+  void average_edges() {
+    std::vector<EdgeSite> sites;
+    for (int round = 0; round < kMostAverages; ++round) {
+      const double stray_ratio = strips_->stray_ratio();
+      sites = strips_->sites(fit_.offset_mm, tau_mm_, stray_ratio);
+      if (sites.empty()) return;
+      strips_->set_messages(sites);
+      pass_messages(assemble(), stray_ratio, sites);
+      strips_->set_messages(sites);
+      const double moved_mm = step();
+      look();
+      if (moved_mm < settled_mm()) break;
+    }
+    fit_.covariance = inverse_of(assemble());
   }
 
   void make_basis(double spacing_mm) {
@@ -365,6 +389,7 @@ class SurfaceFitter {
   std::vector<std::vector<ContourStation>> followed_;
   std::vector<std::size_t> near_, points_;  // scan points near the contours, and those that take part
   std::vector<SurfacePair> pairs_;
+  Eigen::MatrixXd doubt_mm2_;  // covariance of what may be owed to strays
   double unfollowed_mm_ = kUnfollowedMm;
   double scale_mm_ = 10.0, tau_mm_ = kStartTauMm, strip_reach_mm_ = 20.0;
 };

@@ -28,6 +28,11 @@ double SurfaceSystem::dot(const Row& row, const Eigen::VectorXd& x) const {
   return sum;
 }
 
+void SurfaceSystem::put(const Row& row, Eigen::Ref<Eigen::VectorXd> column) const {
+  for (std::size_t a = 0; a < row.node->size(); ++a) column.segment<3>(3 * (*row.node)[a]) = row.direction[a];
+  if (row.offset >= 0) column[last(row)] = row.offset_derivative;
+}
+
 Eigen::VectorXd SurfaceSystem::times(const Eigen::MatrixXd& symmetric, const Row& row) const {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(gradient.size());
   for (std::size_t a = 0; a < row.node->size(); ++a)

@@ -27,6 +27,8 @@ struct SurfaceSystem {
   void add(const Row& row, double slope, double curvature);
   /// J x, and M J' of a symmetric matrix; they cost the row's nodes, not all unknowns.
   [[nodiscard]] double dot(const Row& row, const Eigen::VectorXd& x) const;
+  /// J' as a column of zeros.
+  void put(const Row& row, Eigen::Ref<Eigen::VectorXd> column) const;
   [[nodiscard]] Eigen::VectorXd times(const Eigen::MatrixXd& symmetric, const Row& row) const;
   SurfaceSystem& operator+=(const SurfaceSystem& other) {
     information += other.information;
