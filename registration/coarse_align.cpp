@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kRefined = 4, kRefinedMore = 8,
                       kRefinedOfGood = 2;  // starts a hypothesis that are refined
-constexpr double kFitsCapRatio = 0.33;     // of the largest distance that scores count, beyond the spacing
+constexpr double kFitsCapRatio = 0.25;     // of the largest distance that scores count, beyond the spacing
 constexpr double kFewestShown = 0.40;      // of the contours: less shows no pose
 constexpr double kMostAgainst = 0.2, kMostAgainstWhole = 0.1;  // of the contours: the face goes on there
 constexpr double kGoodCapRatio = 0.25;      // a pose from whole loops as good as this is not searched further
