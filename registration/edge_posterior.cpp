@@ -11,13 +11,17 @@ namespace {
 
 constexpr int kMostSweeps = 60;
 constexpr double kDamping = 0.5;
-constexpr double kSettledSds = 1e-3;   // moves of a mean that no longer matter
-constexpr double kBalance = 0.3375;    // blurs: -log of a bound is 1 there, so that a hard edge is not biased
+constexpr double kSettledSds = 1e-3;  // moves of a mean that no longer matter
+constexpr double kBalance = 0.3375;   // blurs: -log of a bound is 1 there, so that a hard edge is not biased
 constexpr double kLeastShare = 1e-280;
 constexpr double kLeastPrecision = 1e-9;
 
-double normal_density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi); }
-double normal_share(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
+double normal_density(double z) {
+  return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
+}
+double normal_share(double z) {
+  return 0.5 * std::erfc(-z / std::numbers::sqrt2);
+}
 
 /// The message that gives a bound's mean and variance when the rest says N(mean_mm, variance_mm2) of g. What
 /// lies so far out that it is more likely a stray pulls, but makes nothing certain.

@@ -14,7 +14,9 @@ inline constexpr double kEdgeBlurMm = 0.03;
 /// inside.
 struct EdgeMessage {
   double precision_per_mm2 = 0.0, pull_per_mm = 0.0;
-  [[nodiscard]] double slope_at(double inside_mm) const { return precision_per_mm2 * inside_mm - pull_per_mm; }
+  [[nodiscard]] double slope_at(double inside_mm) const {
+    return precision_per_mm2 * inside_mm - pull_per_mm;
+  }
 };
 
 /// A scan point near enough to an edge to bound it.
@@ -25,11 +27,11 @@ struct EdgeSite {
   EdgeMessage message;
 };
 
-/// Posterior mean and covariance instead of the mode for one-sided edges, by expectation propagation. The mode
-/// of a hard edge touches the outermost points and lies up to the edge limit beside the mean, and its
-/// curvature does not know how far the edge may still be. Each point bounds its edge, but for a blur and for a
-/// share of strays; here the bound's message is renewed until it gives the mean and variance of the point's g
-/// that the bound itself gives beside all the others' messages.
+/// Posterior mean and covariance instead of the mode for one-sided edges, by expectation propagation. The
+/// mode of a hard edge touches the outermost points and lies up to the edge limit beside the mean, and its
+/// curvature does not know how far the edge may still be. Each point bounds its edge, but for a blur and for
+/// a share of strays; here the bound's message is renewed until it gives the mean and variance of the point's
+/// g that the bound itself gives beside all the others' messages.
 ///   fit      normal equations at the fit as it stands, the sites' messages in them
 ///   sites    their messages are renewed
 ///   cost     O(unknowns^2 * sites + sweeps * sites^3)

@@ -1,6 +1,7 @@
 #include "registration/surface_field.hpp"
 
 #include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -11,6 +12,9 @@ namespace arris {
 namespace {
 
 constexpr double kSlideStepMm = 10.0;
+constexpr double kTurnSpacings = 0.5;  // of the nodes: radius of the ring that an axis turns with
+constexpr int kRingPoints = 6;
+constexpr double kFlatRatio = 1e-3;  // a ring narrower than this turns nothing
 
 /// Nearest accepted contour; -1 when there is none.
 int nearest_contour(const CadModel& cad, const Eigen::Vector3d& p_mm, CurveFoot& foot) {
@@ -39,7 +43,7 @@ MappedPoint SurfaceField::map(const Eigen::Vector3d& p_cad_mm) const {
   const BasisRow row = fit_.basis->row(foot.foot_mm, cad_.smooth_normal(foot));
   if (!row.usable()) return mapped;
   const LocalShape shape = local_shape(row, fit_.shift_mm);
-  const Eigen::Matrix3d turn = shape.rotation(row);
+  const Eigen::Matrix3d turn = turn_about(foot.foot_mm, row);
   const Eigen::Vector3d inward = cad_.inward(static_cast<std::size_t>(contour), beside.arc_mm);
   Eigen::Vector3d p_mm = foot.foot_mm + shape.shift_mm + turn * (p_cad_mm - foot.foot_mm);
   const bool follow = role_ == ContourRole::kEdge;
@@ -50,7 +54,7 @@ MappedPoint SurfaceField::map(const Eigen::Vector3d& p_cad_mm) const {
   mapped.sd_mm = {sd_along_mm(row, shape.normal, -1), sd_along_mm(row, turn * inward, follow ? contour : -1),
                   sd_along_mm(row, turn * tangent, -1)};
   if (follow) mapped.sd_mm.y() = std::hypot(mapped.sd_mm.y(), fit_.scanner_sd_mm);
-  mapped.sd_axis_rad = sd_tilt_rad(row, turn * inward, shape.normal);
+  mapped.sd_axis_rad = sd_tilt_rad(foot.foot_mm, row, inward, shape.normal);
   const double more_mm2 = unfollowed_mm2(row), wave_mm = 2.0 * fit_.basis->spacing_mm();
   mapped.sd_mm.x() = std::hypot(mapped.sd_mm.x(), std::sqrt(more_mm2));
   mapped.sd_axis_rad = std::hypot(
@@ -58,6 +62,38 @@ MappedPoint SurfaceField::map(const Eigen::Vector3d& p_cad_mm) const {
   mapped.from_data = seen_.empty() || seen_[static_cast<std::size_t>(contour)].at(beside.arc_mm);
   mapped.in_domain = true;
   return mapped;
+}
+
+Eigen::Matrix3d SurfaceField::turn_about(const Eigen::Vector3d& foot_mm, const BasisRow& row) const {
+  const double radius_mm = kTurnSpacings * fit_.basis->spacing_mm();
+  std::vector<Eigen::Vector3d> nominal_mm, carried_mm;
+  Eigen::Vector3d nominal_mean = Eigen::Vector3d::Zero(), carried_mean = Eigen::Vector3d::Zero();
+  const auto add = [&](const Eigen::Vector3d& p_mm, const BasisRow& at) {
+    nominal_mm.push_back(p_mm);
+    carried_mm.push_back(p_mm + at.combine(BasisRow::kValue, fit_.shift_mm));
+    nominal_mean += nominal_mm.back();
+    carried_mean += carried_mm.back();
+  };
+  add(foot_mm, row);
+  for (int k = 0; k < kRingPoints; ++k) {
+    const double angle_rad = 2.0 * std::numbers::pi * k / kRingPoints;
+    const Eigen::Vector3d direction = std::cos(angle_rad) * row.t1 + std::sin(angle_rad) * row.t2;
+    const SurfacePoint near = cad_.surface.closest(foot_mm + radius_mm * direction, radius_mm);
+    if (near.triangle < 0) continue;
+    const BasisRow at = fit_.basis->row(near.foot_mm, cad_.smooth_normal(near));
+    if (at.usable()) add(near.foot_mm, at);
+  }
+  nominal_mean /= static_cast<double>(nominal_mm.size());
+  carried_mean /= static_cast<double>(nominal_mm.size());
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (std::size_t k = 0; k < nominal_mm.size(); ++k)
+    sum += (carried_mm[k] - carried_mean) * (nominal_mm[k] - nominal_mean).transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  if (svd.singularValues()[1] < kFlatRatio * radius_mm * radius_mm)
+    return local_shape(row, fit_.shift_mm).rotation(row);
+  Eigen::Matrix3d turn = svd.matrixU();
+  if ((turn * svd.matrixV().transpose()).determinant() < 0.0) turn.col(2) = -turn.col(2);
+  return turn * svd.matrixV().transpose();
 }
 
 double SurfaceField::sd_along_mm(const BasisRow& row, const Eigen::Vector3d& direction, int offset) const {
@@ -76,13 +112,23 @@ double SurfaceField::sd_along_mm(const BasisRow& row, const Eigen::Vector3d& dir
   return std::sqrt(std::max(0.0, variance));
 }
 
-double SurfaceField::sd_tilt_rad(const BasisRow& row, const Eigen::Vector3d& inward,
-                                 const Eigen::Vector3d& normal) const {
-  // Slope of the surface across the contour: the normal part of the shift's derivative along `inward`.
-  const double along1 = row.t1.dot(inward), along2 = row.t2.dot(inward);
+double SurfaceField::sd_tilt_rad(const Eigen::Vector3d& foot_mm, const BasisRow& row,
+                                 const Eigen::Vector3d& inward, const Eigen::Vector3d& normal) const {
+  // Slope of the chord across the contour: the normal part of the difference of two shifts.
+  const double radius_mm = kTurnSpacings * fit_.basis->spacing_mm();
+  const SurfacePoint deep = cad_.surface.closest(foot_mm + radius_mm * inward, radius_mm);
   BasisRow slope = row;
-  for (BasisRow::Weights& w : slope.weight)
-    w[BasisRow::kValue] = along1 * w[BasisRow::kD1] + along2 * w[BasisRow::kD2];
+  if (deep.triangle >= 0) slope = fit_.basis->row(deep.foot_mm, cad_.smooth_normal(deep));
+  const double chord_mm = deep.triangle < 0 ? 0.0 : (deep.foot_mm - foot_mm).norm();
+  if (chord_mm < kFlatRatio * radius_mm || !slope.usable()) {  // no room: the field's own slope
+    slope = row;
+    for (BasisRow::Weights& w : slope.weight)
+      w[BasisRow::kValue] = row.t1.dot(inward) * w[BasisRow::kD1] + row.t2.dot(inward) * w[BasisRow::kD2];
+    return sd_along_mm(slope, normal, -1);
+  }
+  slope.node.insert(slope.node.end(), row.node.begin(), row.node.end());
+  for (const BasisRow::Weights& w : row.weight) slope.weight.push_back(-w);
+  for (BasisRow::Weights& w : slope.weight) w /= chord_mm;
   return sd_along_mm(slope, normal, -1);
 }
 
@@ -119,7 +165,7 @@ RigidMotion SurfaceField::material_motion(std::size_t contour, double arc_mm) co
   if (!row.usable()) return fit_.scan_from_cad;
   const LocalShape shape = local_shape(row, fit_.shift_mm);
   RigidMotion moved = RigidMotion::Identity();
-  moved.linear() = shape.rotation(row);
+  moved.linear() = turn_about(p_mm, row);
   moved.translation() = p_mm + shape.shift_mm - moved.linear() * p_mm;
   return fit_.scan_from_cad * moved;
 }

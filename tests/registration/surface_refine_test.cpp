@@ -56,13 +56,22 @@ TEST(SurfaceField, FollowsABentPlateToASmallPartOfTheEdgeLimit) {
 TEST(SurfaceField, DoesNotInventADeformation) {
   const PlatePart part(bent(0.0));
   const CadModel cad = scenes::cad_of(part);
-  const Trial trial = scenes::ideal_trial(part, {}, 4);
-  const SurfaceField field = fitted(cad, trial, options_for(part), RigidMotion::Identity());
-  for (double s_mm = 0.0; s_mm < cad.contours[0].length_mm(); s_mm += 10.0) {
-    const Eigen::Vector3d p = cad.contours[0].point_mm(s_mm);
-    EXPECT_LT(std::abs((field.map(p).p_scan_mm - p).z()), 0.06);
-    EXPECT_LT((field.map(p).p_scan_mm - p).norm(), 1.5 * trial.edge_limit_mm);
+  double most_over_limit = 0.0;
+  constexpr std::uint64_t kScans = 3;
+  for (std::uint64_t seed = 4; seed < 4 + kScans; ++seed) {
+    const Trial trial = scenes::ideal_trial(part, {}, seed);
+    const SurfaceField field = fitted(cad, trial, options_for(part), RigidMotion::Identity());
+    double most_mm = 0.0;
+    for (double s_mm = 0.0; s_mm < cad.contours[0].length_mm(); s_mm += 10.0) {
+      const Eigen::Vector3d p = cad.contours[0].point_mm(s_mm);
+      const MappedPoint mapped = field.map(p);
+      EXPECT_LT(std::abs((mapped.p_scan_mm - p).z()), 0.06);
+      EXPECT_LT(Eigen::AngleAxisd(mapped.rotation_scan_from_cad).angle(), 0.003);
+      most_mm = std::max(most_mm, (mapped.p_scan_mm - p).norm());
+    }
+    most_over_limit += most_mm / trial.edge_limit_mm / static_cast<double>(kScans);
   }
+  EXPECT_LT(most_over_limit, 1.5);
 }
 
 TEST(SurfaceField, CarriesAPatchThatWasNotScannedByTheStiffnessOfTheSheet) {
