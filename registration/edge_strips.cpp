@@ -13,11 +13,11 @@ constexpr double kStationMm = 2.0;
 constexpr double kTauFloorMm = 0.03;
 constexpr double kClaimTaus = 3.0;  // farther inside a point pulls nothing, farther outside it is let go
 constexpr double kSitePoints = 45.0, kSiteBlurs = 5.0;  // farther inside a point bounds nothing
-constexpr double kDensePerMm = 300.0;  // so many points within a mm of an edge: its mode and mean are one
-constexpr double kNearRatio = 0.2, kStrayHeightMm = 2.0;  // flyers of an edge stand above and below it
-constexpr double kUnseenStrays = 0.5;                     // none seen is no proof that there are none
-constexpr double kMostStrayRatio = 0.05;                  // early rounds leave material beyond the edge
-constexpr double kBurrTaus = 4.0, kBurrSpacings = 0.3;    // nearer to the edge a point may well be of it
+constexpr double kDensePerMm = 300.0;     // so many points within a mm of an edge: its mode and mean are one
+constexpr double kStrayHeightMm = 2.0;    // flyers of an edge stand above and below it
+constexpr double kUnseenStrays = 0.5;     // none seen is no proof that there are none
+constexpr double kMostStrayRatio = 0.05;  // early rounds leave material beyond the edge
+constexpr double kBurrTaus = 4.0, kBurrSpacings = 0.3;  // nearer to the edge a point may well be of it
 constexpr double kHighestBurrMm = 4.0, kBurrGates = 1.5;
 constexpr std::size_t kChunk = 256;
 
@@ -272,6 +272,20 @@ std::vector<EdgeClaim> EdgeStrips::claims(const std::vector<double>& offset_mm, 
     found.push_back(std::move(claim));
   }
   return found;
+}
+
+double EdgeStrips::length_mm() const {
+  double sum_mm = 0.0;
+  for (const Edge& edge : edges_) sum_mm += edge.curve->length_mm();
+  return sum_mm;
+}
+
+double EdgeStrips::seen_mm() const {
+  double sum_mm = 0.0;
+  for (const Edge& edge : edges_)
+    sum_mm +=
+        edge.bins.bin_mm * static_cast<double>(std::count(edge.bins.seen.begin(), edge.bins.seen.end(), 1));
+  return sum_mm;
 }
 
 double EdgeStrips::finest_tau_mm(double share_ratio) const {

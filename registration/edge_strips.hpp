@@ -63,6 +63,14 @@ class EdgeStrips {
   /// Looks for burrs, which tell nothing of where the edge is; true: other places than before.
   bool call_burrs(const std::vector<double>& offset_mm, double tau_mm);
 
+  /// Length of the edges, all together, and of what the scan shows of them.
+  [[nodiscard]] double length_mm() const;
+  [[nodiscard]] double seen_mm() const;
+  /// Points level with the material beyond its edges, out to half a strip.
+  [[nodiscard]] std::size_t points_beyond() const {
+    return points_in_void(kNearRatio * strip_mm_, 0.5 * strip_mm_, gate_mm_);
+  }
+
   [[nodiscard]] std::size_t size() const { return edges_.size(); }
   [[nodiscard]] const std::vector<ContourStation>& stations(std::size_t edge) const {
     return edges_[edge].stations;
@@ -74,6 +82,7 @@ class EdgeStrips {
   [[nodiscard]] double greatest_density_per_mm2() const;
 
  private:
+  static constexpr double kNearRatio = 0.2;  // of a strip: nearer by, points beyond an edge may be of it
   struct Edge {
     const Curve* curve = nullptr;
     std::vector<ContourStation> stations;

@@ -1,7 +1,9 @@
 #include "registration/surface_refine.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "acquisition/geometry/evenly_drawn.hpp"
@@ -33,9 +35,12 @@ constexpr double kFinerFactor = 1.5, kShapeCellRatio = 0.67;               // of
 constexpr double kWorthMm = 0.004, kWorthSigmas = 1.0, kWorthRatio = 0.5;  // of a shape left, to follow it
 constexpr double kStiffStrainRatio = 1e-5, kStiffBendPerMm = 1e-6;  // of a part that stays as it is drawn
 constexpr double kRigidMm = 0.015, kRigidSigmas = 0.3, kMostRigidSigmas = 1.3;
-constexpr double kUnknownThicknessWiden = 2.0;  // the mid-surface's strain is then not known
-constexpr int kMostAverages = 8;                // rounds of messages between points and edges
-constexpr std::size_t kParts = 2;               // chunks of a list: each needs a system of its own
+constexpr double kUnknownThicknessWiden = 2.0;                 // the mid-surface's strain is then not known
+constexpr double kElsewhereMm = 12.0, kWorthSeenRatio = 0.13;  // of the edges' length
+constexpr int kElsewhereSteps = 6;
+constexpr std::size_t kFewBeyond = 2;
+constexpr int kMostAverages = 8;   // rounds of messages between points and edges
+constexpr std::size_t kParts = 2;  // chunks of a list: each needs a system of its own
 
 double area_mm2_of(const std::vector<SurfaceCell>& cells) {
   double area_mm2 = 0.0;
@@ -85,6 +90,7 @@ class SurfaceFitter {
     for (int pass = 1; fit_.usable() && call_strays() && pass < kStrayPasses; ++pass) settle();
     if (fit_.usable()) {
       average_edges();
+      fit_.elsewhere_mm = seen_better_by_mm();
       fit_.covariance += doubt_mm2_;
     }
     return std::move(fit_);
@@ -209,6 +215,45 @@ class SurfaceFitter {
       if (moved_mm < settled_mm()) break;
     }
     fit_.covariance = inverse_of(assemble());
+  }
+
+  /// Edges that seem missing may lie elsewhere: a fit that slid too far along a slot sees the slot's ends as
+  /// gaps, and nothing calls it back. How far the contours would have to move along the part, if at all, for
+  /// far more of them to be seen and no more material to lie beyond them.
+  [[nodiscard]] double seen_better_by_mm() {
+    double best_mm = 0.0;
+    const double seen_mm = strips_->seen_mm(), worth_mm = kWorthSeenRatio * strips_->length_mm();
+    if (strips_->length_mm() - seen_mm < worth_mm) return best_mm;
+    const std::size_t beyond = strips_->points_beyond();
+    double most_mm = seen_mm + worth_mm;
+    for (const Eigen::Vector3d& direction : along_contours())
+      for (int step = -kElsewhereSteps; step <= kElsewhereSteps; ++step) {
+        std::vector<Eigen::Vector3d> moved = fit_.shift_mm;
+        const double by_mm = kElsewhereMm / kElsewhereSteps * step;
+        for (Eigen::Vector3d& shift : moved) shift += by_mm * direction;
+        strips_->update(pairs_, moved, strip_reach_mm_, kGateSigmas * fit_.sigma_mm, options_.threads);
+        if (strips_->seen_mm() <= most_mm || strips_->points_beyond() > beyond + kFewBeyond) continue;
+        most_mm = strips_->seen_mm();
+        best_mm = std::abs(by_mm);
+      }
+    strips_->update(pairs_, fit_.shift_mm, strip_reach_mm_, kGateSigmas * fit_.sigma_mm, options_.threads);
+    return best_mm;
+  }
+
+  /// The two directions in which the contours extend most.
+  [[nodiscard]] std::array<Eigen::Vector3d, 2> along_contours() const {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    double count = 0.0;
+    for (const std::vector<ContourStation>& stations : followed_)
+      for (const ContourStation& station : stations) {
+        mean += station.point_mm;
+        spread += station.point_mm * station.point_mm.transpose();
+        count += 1.0;
+      }
+    mean /= count;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread / count - mean * mean.transpose());
+    return {axes.eigenvectors().col(2), axes.eigenvectors().col(1)};
   }
 
   void make_basis(double spacing_mm) {

@@ -154,6 +154,17 @@ void judge_edges(const CadModel& cad, const SurfaceField& field, const Registrat
   }
 }
 
+/// A fit that slid along the part and took the edges it left behind for gaps.
+void judge_slide(const SurfaceField& field, Registration& result) {
+  if (field.fit().elsewhere_mm <= 0.0) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "the edges would be seen much better with the part moved by %.0f mm: it was placed wrongly; "
+                "scan.initial in the recipe helps, or a scan of what is missing",
+                field.fit().elsewhere_mm);
+  result.refusals.emplace_back(text);
+}
+
 }  // namespace
 
 void deform_by_surface(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options,
@@ -180,6 +191,7 @@ void deform_by_surface(const CadModel& cad, const ScanModel& scan, const Registr
     seen.push_back(seen_along(scan, cad.contours[c], result.contours[c], options.role));
   if (options.role == ContourRole::kCut) judge_cut(cad, scan, seen, field->fit().sigma_mm, options, result);
   field->set_seen(std::move(seen));
+  judge_slide(*field, result);
   if (options.role == ContourRole::kEdge) judge_edges(cad, *field, options, result);
   judge_place(cad, *field, options, result);
   result.field = std::move(field);

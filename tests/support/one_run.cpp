@@ -29,15 +29,14 @@ OneRun run_one(const RunInputs& inputs, const PointCloud& cloud, const Registrat
   run.found = register_part(inputs.cad, prepared.model, options);
   run.reasons = run.found.refusals;
   if (!run.found.usable()) return run;
-  run.correction =
-      correct(inputs.path, inputs.cad.surface, *run.found.field, run.found.rigid.scan_from_cad,
-              correct_options(inputs.recipe, inputs.threads));
+  run.correction = correct(inputs.path, inputs.cad.surface, *run.found.field, run.found.rigid.scan_from_cad,
+                           correct_options(inputs.recipe, inputs.threads));
   run.reasons.insert(run.reasons.end(), run.correction.reasons.begin(), run.correction.reasons.end());
   return run;
 }
 
-RigidMotion near_pose(const RigidMotion& local_from_cad, const Eigen::Vector3d& about_mm,
-                      std::uint64_t seed, double share_ratio) {
+RigidMotion near_pose(const RigidMotion& local_from_cad, const Eigen::Vector3d& about_mm, std::uint64_t seed,
+                      double share_ratio) {
   synthetic::Random random(seed + 500000);
   const Eigen::AngleAxisd turn(share_ratio * random.uniform(0.0, kPoseTurnRad), random.direction());
   const Eigen::Vector3d shift_mm = share_ratio * random.uniform(0.0, kPoseShiftMm) * random.direction();

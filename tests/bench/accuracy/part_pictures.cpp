@@ -40,7 +40,8 @@ void add_lines(Plot& plot, const ToolPath& path, const std::vector<StatedError>&
 Figure error_figure(const BenchPart& part, const std::vector<StatedError>& stated) {
   Plot plot;
   plot.title = part.fe.name() + ": error of the corrected path along its contours";
-  plot.subtitle = "from the true edge, signed: normal to the surface, in it across the contour; noise 0.05 mm, seed 1";
+  plot.subtitle =
+      "from the true edge, signed: normal to the surface, in it across the contour; noise 0.05 mm, seed 1";
   plot.x_label = "arc length along the path, contour after contour, mm";
   plot.y_label = "error, mm";
   add_lines(plot, part.drawing.path, stated, StatedError::kNormal, "normal", kNormal);
@@ -58,8 +59,8 @@ std::vector<Eigen::Vector3d> axes_of(const ToolPath& path) {
 
 std::vector<Figure> part_pictures(const BenchPart& part) {
   std::vector<Figure> figures;
-  const PartPicture bent = bent_part_picture(part, part.fe.name() + ": how it is bent",
-                                             part.fe.band_mm() * kMeshBands);
+  const PartPicture bent =
+      bent_part_picture(part, part.fe.name() + ": how it is bent", part.fe.band_mm() * kMeshBands);
   figures.push_back({part.fe.name() + "-bent.png", shrunk(part_png(bent))});
   const synthetic::SyntheticScan scan = sample_scan(part.fe, {}, 1);
   const PointCloud cloud = scan.cloud();

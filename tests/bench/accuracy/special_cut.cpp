@@ -117,8 +117,8 @@ std::vector<GoalRow> cut_rows(const SpecialSetup& setup) {
   rows.push_back(held_row(porthole, "role cut, whole face scanned, not cut yet", {}, setup));
   rows.push_back(held_row(sheet, "role cut, whole face scanned, not cut yet, pose given",
                           {.whole_face = true, .pose_given = true}, setup));
-  rows.push_back(refused_row(sheet, "the same, no pose given: its outline looks alike half turned", {}, false,
-                             setup));
+  rows.push_back(
+      refused_row(sheet, "the same, no pose given: its outline looks alike half turned", {}, false, setup));
   for (const BenchPart* part : {&porthole, &sheet})
     rows.push_back(refused_row(*part, "role cut, band scanned, nothing holds the slide",
                                {.whole_face = false, .pose_given = false}, true, setup));

@@ -40,10 +40,10 @@ std::string shrunk(const std::string& png) {
   Unread unread{png};
   const Surface large(cairo_image_surface_create_from_png_stream(read_bytes, &unread), cairo_surface_destroy);
   const auto part = [](int size_px) { return static_cast<int>(kShrunkRatio * size_px); };
-  const Surface small(cairo_image_surface_create(CAIRO_FORMAT_RGB24,
-                                                 part(cairo_image_surface_get_width(large.get())),
-                                                 part(cairo_image_surface_get_height(large.get()))),
-                      cairo_surface_destroy);
+  const Surface small(
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, part(cairo_image_surface_get_width(large.get())),
+                                 part(cairo_image_surface_get_height(large.get()))),
+      cairo_surface_destroy);
   const Drawing drawing(cairo_create(small.get()), cairo_destroy);
   cairo_scale(drawing.get(), kShrunkRatio, kShrunkRatio);
   cairo_set_source_surface(drawing.get(), large.get(), 0.0, 0.0);
