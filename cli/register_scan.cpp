@@ -33,11 +33,17 @@ void refuse_wrong_input(const CoarseAlignment& coarse, const Recipe& recipe) {
          .next = is_face ? "check part.cad_is, contour.accept and toolpath.face; or export the scan again"
                          : "export the scan again without mirroring, or take the drawing of the other hand"});
   if (coarse.no_points)
-    throw Error(Fault::kInput, {.what = "no points in the band",
-                                .found = "no scan point near the part at the initial pose",
-                                .needed = "a scan that shows the contour's surroundings (scan.initial, "
-                                          "registration.subdivision.band_mm)",
-                                .next = "check scan.initial, or leave it out to search for the pose"});
+    throw Error(
+        Fault::kInput,
+        {.what = "no points in the band",
+         .found = coarse.reason,
+         .needed =
+             recipe.contour.role == "cut"
+                 ? "a scan that shows the outline or a datum hole of the drawing with its surroundings, "
+                   "where scan.initial puts it"
+                 : "a scan that shows the contour's surroundings (scan.initial, "
+                   "registration.subdivision.band_mm)",
+         .next = "check scan.initial, or leave it out to search for the pose"});
   if (coarse.unit_ratio == 1.0) return;
   char ratio[32];
   std::snprintf(ratio, sizeof ratio, "%g", coarse.unit_ratio);

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "registration/path_symmetry.hpp"
+#include "registration/pose_evidence.hpp"
 #include "registration/pose_search.hpp"
 #include "registration/unit_guess.hpp"
 
@@ -22,6 +23,9 @@ constexpr double kMirrorLeastRatio = 0.1;   // of the cap: a pose that leaves no
 constexpr double kMirrorOfAmbiguousRatio = 0.8;  // of the scores, when two poses fit alike
 constexpr double kInitialFitsRatio = 0.08;  // of the contour's size: a long side on a short one leaves more
 constexpr double kNotWorseRatio = 0.95;     // of the strict misfits: who wins by the patient one
+constexpr std::size_t kNearSample = 500;
+constexpr double kAlsoFitsRatio = 1.5;     // of what the best pose leaves: the other is a fit if it is one
+constexpr double kSelfMotionRatio = 0.06;  // of the contour's size: how well a motion of the drawing is known
 constexpr double kQuarterMissing = 0.78, kTenthMissing = 0.92;  // shown of the contours
 
 std::string millimetres(double value_mm) {
@@ -62,12 +66,17 @@ class CoarseSearch {
   CoarseAlignment from_nothing();
 
  private:
+  [[nodiscard]] std::string near_initial() const;
   [[nodiscard]] std::vector<PoseCandidate> proper(StartSource source, std::size_t refined) const;
   [[nodiscard]] bool fits(const std::vector<PoseCandidate>& found, double cap_ratio) const {
     return !found.empty() &&
            beyond_spacing(found.front().misfit.patient_mm, scan_) <= cap_ratio * search_.score().cap_mm() &&
-           (found.front().misfit.shown_ratio >= kFewestShown || !options_.edges_needed) &&
-           found.front().misfit.against_ratio <= kMostAgainst;
+           not_contradicted(found.front());
+  }
+  /// Enough of its edges are in the scan, and the face ends there.
+  [[nodiscard]] bool not_contradicted(const PoseCandidate& pose) const {
+    return (pose.misfit.shown_ratio >= kFewestShown || !options_.edges_needed) &&
+           pose.misfit.against_ratio <= kMostAgainst;
   }
   /// So well that nothing else need be tried: what the scan does not show may be beyond its border.
   [[nodiscard]] bool fits_whole(const std::vector<PoseCandidate>& found) const {
@@ -82,7 +91,10 @@ class CoarseSearch {
   [[nodiscard]] bool refuse_wrong_hand(const std::vector<PoseCandidate>& found);
   void judge_runner_up(const std::vector<PoseCandidate>& proper);
   [[nodiscard]] bool comes_to(const PoseCandidate& best, const PoseCandidate& other) const;
+  [[nodiscard]] bool only_bending_decides(const PoseCandidate& best, const PoseCandidate& other,
+                                          const PathSymmetry& path) const;
   void refuse_ambiguous(const PoseCandidate& best, const PoseCandidate& other);
+  void refuse_untold(const PoseCandidate& best, const PoseCandidate& other);
   [[nodiscard]] bool side_open() const { return scan_.side == SideKnown::kNo; }
 
   const CadModel& cad_;
@@ -98,6 +110,26 @@ void CoarseSearch::take(const PoseCandidate& best) {
   result_.flipped_normals = best.flip;
 }
 
+/// In words, what the initial pose puts near the contours that hold the part, and near its face.
+std::string CoarseSearch::near_initial() const {
+  const RigidMotion& initial = *options_.initial_scan_from_cad;
+  double nearest2_mm2 = 1e300;
+  for (const PoseScore::Sample& sample : search_.score().samples())
+    nearest2_mm2 = std::min(nearest2_mm2, scan_.tree.nearest(initial * sample.place_mm).distance2_mm2);
+  const std::vector<Eigen::Vector3d> points_mm = every(scan_.points_mm, kNearSample);
+  const RigidMotion cad_from_scan = initial.inverse();
+  const auto near = std::count_if(points_mm.begin(), points_mm.end(), [&](const Eigen::Vector3d& p) {
+    return cad_.surface.closest(cad_from_scan * p, options_.band_mm).triangle >= 0;
+  });
+  const std::string within = " within " + millimetres(options_.band_mm) + " mm (band_mm) of ";
+  std::string words = "the initial pose of the recipe puts too few scan points" + within +
+                      (options_.edges_needed ? "the contours" : "the contours that hold the part");
+  if (!points_mm.empty())
+    words += " (the nearest is " + millimetres(std::sqrt(nearest2_mm2)) + " mm away), and " +
+             percent(double(near) / double(points_mm.size())) + " of them" + within + "the part's face";
+  return words;
+}
+
 CoarseAlignment CoarseSearch::from_initial() {
   result_.start = "initial pose";
   const RigidMotion& initial = *options_.initial_scan_from_cad;
@@ -109,7 +141,7 @@ CoarseAlignment CoarseSearch::from_initial() {
     if (refined.misfit.patient_mm < best.misfit.patient_mm) best = refined;
   }
   if (!best.usable()) {
-    result_.reason = "no points in the band: the initial pose of the recipe puts no scan point near the part";
+    result_.reason = "no points in the band: " + near_initial();
     result_.no_points = true;
     return result_;
   }
@@ -227,7 +259,46 @@ bool CoarseSearch::comes_to(const PoseCandidate& best, const PoseCandidate& othe
   return a.usable() && b.usable() && search_.same_place(a, b);
 }
 
-/// The best pose elsewhere must be clearly worse, but where it lays the whole tool path on itself.
+/// Whether the other pose is a fit as well and lays the drawing's contours, as far as the scan shows them,
+/// where the best one does, but not the path: its worse score comes from how the part is bent, or from noise.
+bool CoarseSearch::only_bending_decides(const PoseCandidate& best, const PoseCandidate& other,
+                                        const PathSymmetry& path) const {
+  const double fits_mm = kFitsCapRatio * search_.score().cap_mm();
+  const double most_mm = std::max(fits_mm, kAlsoFitsRatio * beyond_spacing(best.misfit.patient_mm, scan_));
+  const auto fits_too = [&](const PoseCandidate& pose) {
+    return pose.usable() && beyond_spacing(pose.misfit.patient_mm, scan_) <= most_mm &&
+           not_contradicted(pose);
+  };
+  if (!fits_too(other)) return false;
+  const LightScan light(scan_, best.flip, false);
+  const PoseCandidate a = search_.settled(light, best), b = search_.settled(light, other);
+  if (!a.usable() || !fits_too(b)) return false;
+  const std::optional<RigidMotion> motion = search_.self_motion_between(a, b);
+  if (!motion || path.maps_onto_itself(*motion)) return false;
+  const double size_mm = search_.score().size_mm();
+  const PoseTolerance tolerance = pose_tolerance(scan_.spacing_mm, size_mm, fits_mm);
+  const double within_mm = kSelfMotionRatio * size_mm;
+  // A path round the edges that are seen goes where they are, nearly the same from either pose.
+  if (options_.edges_needed && path.farthest_off_mm(*motion) <= tolerance.in_face_mm + within_mm)
+    return false;
+  return lays_shown_on_itself(cad_, light, a.scan_from_cad, *motion, tolerance, within_mm) &&
+         !edges_tell_apart(cad_, light, a.scan_from_cad, b.scan_from_cad, tolerance);
+}
+
+void CoarseSearch::refuse_untold(const PoseCandidate& best, const PoseCandidate& other) {
+  const double turn_deg = rotation_between_rad(best.scan_from_cad, other.scan_from_cad) * 180.0 / 3.14159265;
+  char turn[32];
+  std::snprintf(turn, sizeof turn, "%.0f", turn_deg);
+  result_.reason = "two poses fit alike: turned by " + std::string(turn) +
+                   " degrees the drawing's contours that the scan shows lie on themselves, and the tool path "
+                   "does not, so that only bending or noise would choose (runner-up " +
+                   percent(result_.runner_up_ratio) +
+                   " of the best); scan also a hole or a corner that tells them apart, or give scan.initial "
+                   "in the recipe";
+}
+
+/// The best pose elsewhere must be clearly worse, but where it lays the whole tool path on itself; and no
+/// score is enough where the scan's edges do not tell the two apart.
 void CoarseSearch::judge_runner_up(const std::vector<PoseCandidate>& proper) {
   const PoseCandidate& best = proper.front();
   std::vector<Contour> contours;
@@ -240,9 +311,16 @@ void CoarseSearch::judge_runner_up(const std::vector<PoseCandidate>& proper) {
     });
     if (told || !other.usable()) continue;
     const double worse = times_worse(other, best);
-    if (worse < options_.ambiguity_ratio && other.flip == best.flip &&
-        symmetry.maps_onto_itself(best.scan_from_cad.inverse() * other.scan_from_cad)) {
+    const bool same_path = other.flip == best.flip &&
+                           symmetry.maps_onto_itself(best.scan_from_cad.inverse() * other.scan_from_cad);
+    if (worse < options_.ambiguity_ratio && same_path) {
       places.push_back(&other);
+      continue;
+    }
+    if (worse >= options_.ambiguity_ratio && result_.usable() && !same_path && other.flip == best.flip &&
+        only_bending_decides(best, other, symmetry)) {
+      result_.runner_up_ratio = worse;
+      refuse_untold(best, other);
       continue;
     }
     if (worse < options_.ambiguity_ratio && comes_to(best, other)) continue;

@@ -38,7 +38,7 @@ struct CoarseAlignment {
       false;  ///< it fits with its normals turned round: the drawing's or the scan's point the wrong way
   bool mirrored = false;  ///< the scan's mirror image fits, the scan does not: an input error for the caller
   bool no_points =
-      false;  ///< an initial pose with no scan point near the part: an input error for the caller
+      false;  ///< an initial pose with too few scan points near the contours: an input error for the caller
   double unit_ratio = 1.0;  ///< not 1: the loops fit when the scan is scaled by this (25.4, 1000, ..)
   [[nodiscard]] bool usable() const { return reason.empty(); }
 };
@@ -47,8 +47,10 @@ struct CoarseAlignment {
 /// loops; where nothing fits, features of the surface. The best few are refined by a short rigid ICP and
 /// scored; the mirror image of the scan is scored as well, and the other side when nothing says which side
 /// the scanner saw. The runner-up elsewhere must be clearly worse, unless the motion between the two maps the
-/// whole tool path onto itself. Refuses: nothing to match, no pose that fits, two sides or two poses that fit
-/// alike (naming what would decide). Cost: some 10 short ICPs on 250 points; with pieces 5 to 20 times that.
+/// whole tool path onto itself. Where that motion lays the contours that the scan shows on themselves, and
+/// not the path, no score is enough: the scan's edges must tell the two apart. Refuses: nothing to match, no
+/// pose that fits, two sides or two poses that fit alike (naming what would decide). Cost: some 10 short ICPs
+/// on 250 points; with pieces 5 to 20 times that.
 [[nodiscard]] CoarseAlignment coarse_align(const CadModel& cad, const ScanModel& scan,
                                            const CoarseAlignOptions& options);
 

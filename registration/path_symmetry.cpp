@@ -62,6 +62,12 @@ RigidMotion PathSymmetry::settled(RigidMotion motion) const {
   return motion;
 }
 
+double PathSymmetry::farthest_off_mm(const RigidMotion& motion) const {
+  double most_mm = 0.0;
+  for (const Place& place : places_) most_mm = std::max(most_mm, nearest(motion * place.tip_mm).distance_mm);
+  return most_mm;
+}
+
 bool PathSymmetry::maps_onto_itself(const RigidMotion& motion) const {
   if (places_.empty()) return false;
   const RigidMotion exact = settled(motion);

@@ -18,6 +18,8 @@ class PathSymmetry {
   /// every place of the path comes to lie within 0.1 mm of the path, its axis within 1 degree. By
   /// Gauss-Newton on the distances across the path. An empty path has none.
   [[nodiscard]] bool maps_onto_itself(const RigidMotion& motion) const;
+  /// Farthest that `motion`, as it is, takes a place of the path from the path; mm.
+  [[nodiscard]] double farthest_off_mm(const RigidMotion& motion) const;
 
  private:
   struct Place {

@@ -1,6 +1,7 @@
 #include "registration/pose_search.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "acquisition/geometry/parallel_for.hpp"
 #include "registration/edge_pairs.hpp"
@@ -16,7 +17,7 @@ constexpr int kSurfaceSample = 160;
 constexpr double kTellingRatio = 0.5;  // of the longest followed contour: a small hole alone tells too little
 constexpr double kSelfFitsRatio = 0.2;     // of the contour's size: the drawing nearly lies on itself
 constexpr double kSelfLengthRatio = 1.15;  // of two of its contours
-constexpr std::size_t kMostTurned = 4;
+constexpr std::size_t kMostTurned = 4, kMostSelfMotions = 100;
 constexpr std::size_t kEdgeSample = 120;
 constexpr int kIcpRounds = 14, kMoreRefinements = 3, kSettlingRounds = 150;
 constexpr double kFirstReachRatio = 2.0, kSecondReachRatio = 0.5;  // of the cap: edge points that take part
@@ -132,21 +133,57 @@ std::vector<RigidMotion> PoseSearch::starts(const LightScan& scan, StartSource s
   return starts;
 }
 
-std::vector<PoseCandidate> PoseSearch::turned(const LightScan& scan, const PoseCandidate& candidate) const {
-  std::vector<PoseCandidate> found;
-  std::vector<RigidMotion> tried = {candidate.scan_from_cad};
-  for (const LoopMatch& match : match_loops(loops_, loops_, kSelfLengthRatio)) {
-    const RigidMotion start = candidate.scan_from_cad * match.scan_from_cad;
-    if (match.rms_mm > kSelfFitsRatio * score_.size_mm() || tried.size() > kMostTurned) break;
-    if (std::any_of(tried.begin(), tried.end(), [&](const RigidMotion& other) {
-          return moved_mm(start, other) < kSameStartRatio * score_.size_mm();
+/// Of all its contours: a round hole that is laid on itself says nothing of the others.
+double PoseSearch::self_misfit_mm(const RigidMotion& motion) const {
+  constexpr std::size_t kStride = 6;
+  const std::vector<PoseScore::Sample>& samples = score_.samples();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < samples.size(); i += kStride) {
+    const double off_mm = nearest_contour(cad_.contours, motion * samples[i].place_mm).foot.distance_mm;
+    sum += std::pow(std::min(off_mm, score_.cap_mm()), 2) * kStride;
+  }
+  return std::sqrt(sum / static_cast<double>(samples.size()));
+}
+
+std::vector<RigidMotion> PoseSearch::self_motions() const {
+  std::vector<RigidMotion> motions = {RigidMotion::Identity()};
+  std::vector<std::pair<double, std::size_t>> order;
+  for (const LoopMatch& match : match_loops(telling_, telling_, kSelfLengthRatio)) {
+    if (match.rms_mm > kSelfFitsRatio * score_.size_mm() || motions.size() > kMostSelfMotions) break;
+    if (std::any_of(motions.begin(), motions.end(), [&](const RigidMotion& other) {
+          return moved_mm(match.scan_from_cad, other) < kSameStartRatio * score_.size_mm();
         }))
       continue;
-    tried.push_back(start);
-    found.push_back(refine(scan, start));
+    order.emplace_back(self_misfit_mm(match.scan_from_cad), motions.size());
+    motions.push_back(match.scan_from_cad);
+  }
+  std::sort(order.begin(), order.end());
+  if (order.size() > kMostTurned) order.resize(kMostTurned);
+  std::vector<RigidMotion> best;
+  for (const auto& [misfit_mm, i] : order) best.push_back(motions[i]);
+  return best;
+}
+
+std::vector<PoseCandidate> PoseSearch::turned(const LightScan& scan, const PoseCandidate& candidate) const {
+  std::vector<PoseCandidate> found;
+  for (const RigidMotion& motion : self_motions()) {
+    found.push_back(refine(scan, candidate.scan_from_cad * motion));
     found.back().flip = candidate.flip;
   }
   return found;
+}
+
+std::optional<RigidMotion> PoseSearch::self_motion_between(const PoseCandidate& a,
+                                                           const PoseCandidate& b) const {
+  std::optional<RigidMotion> nearest;
+  double least_mm = kSameStartRatio * score_.size_mm();
+  for (const RigidMotion& motion : self_motions()) {
+    const double off_mm = moved_mm(a.scan_from_cad * motion, b.scan_from_cad);
+    if (off_mm >= least_mm) continue;
+    nearest = motion;
+    least_mm = off_mm;
+  }
+  return nearest;
 }
 
 double PoseSearch::moved_mm(const RigidMotion& a, const RigidMotion& b) const {

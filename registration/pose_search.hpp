@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,10 @@ class PoseSearch {
   /// the starts missed the right one of them, this finds it.
   [[nodiscard]] std::vector<PoseCandidate> turned(const LightScan& scan,
                                                   const PoseCandidate& candidate) const;
+  /// The one of those motions that the second pose is nearly turned by from the first; none: they are no two
+  /// ways to lay the part.
+  [[nodiscard]] std::optional<RigidMotion> self_motion_between(const PoseCandidate& a,
+                                                               const PoseCandidate& b) const;
   /// In words, what the surface alone leaves free near a pose: where no edge holds the part it slides. Empty:
   /// nothing.
   [[nodiscard]] std::string free_by_surface(const ScanModel& scan, bool flip, const RigidMotion& start) const;
@@ -57,6 +62,9 @@ class PoseSearch {
                                       int rounds) const;
   [[nodiscard]] double near_mm(const LightScan& scan) const;
   [[nodiscard]] std::vector<RigidMotion> starts(const LightScan& scan, StartSource source) const;
+  /// Motions that lay the drawing's contours nearly on themselves, best first; without the identity.
+  [[nodiscard]] std::vector<RigidMotion> self_motions() const;
+  [[nodiscard]] double self_misfit_mm(const RigidMotion& motion) const;
   [[nodiscard]] double moved_mm(const RigidMotion& a, const RigidMotion& b) const;
 
   const CadModel& cad_;

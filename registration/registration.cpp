@@ -148,6 +148,8 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   const std::optional<CadModel> by_others = cut ? std::optional(posed_by_others(cad)) : std::nullopt;
   const CadModel& posed = cut ? *by_others : cad;
   CoarseAlignOptions coarse = options.coarse;
+  if (coarse.path.empty())  // not round what holds the part, when it is to be cut
+    for (const Curve& curve : cad.contours) coarse.path.push_back(curve.contour());
   coarse.edges_needed = !cut;  // what holds the part is judged at the end, by the field's covariance
   result.coarse = coarse_align(posed, scan, coarse);
   if (!result.coarse.usable()) {

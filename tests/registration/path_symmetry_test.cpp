@@ -43,6 +43,13 @@ TEST(PathSymmetry, ACircleHasEveryTurn) {
     EXPECT_TRUE(path.maps_onto_itself(turned(angle_rad))) << angle_rad;
 }
 
+TEST(PathSymmetry, TheFarthestPlaceIsMeasuredWithoutSettling) {
+  const PathSymmetry path({opening(60.0, 50.0, 5.0)});
+  EXPECT_NEAR(path.farthest_off_mm(turned(kPi)), 0.0, 1e-6);
+  EXPECT_NEAR(path.farthest_off_mm(RigidMotion(Eigen::Translation3d(0.0, 0.0, 3.0))), 3.0, 1e-6);
+  EXPECT_NEAR(path.farthest_off_mm(turned(0.5 * kPi)), 10.0, 0.1);  // the long side over the short one
+}
+
 TEST(PathSymmetry, AxesCountAndSoDoesEveryPolyline) {
   Contour leaning = opening(80.0, 50.0, 5.0);
   for (Eigen::Vector3d& axis : leaning.normals) axis = Eigen::Vector3d(0.2, 0.0, 1.0).normalized();

@@ -126,5 +126,75 @@ TEST(RoleCut, AContourWhoseSurroundingsWereNotScannedIsRefused) {
   EXPECT_NE(why.find("surface along it"), std::string::npos) << why;
 }
 
+/// A bent rectangle whose opening, beside the middle, is still to be cut: a half turn lays the outline on
+/// itself, and not the path. One hole besides breaks that, where the drawing has it.
+synthetic::PlateShape rectangle(bool with_mark) {
+  synthetic::PlateShape shape;
+  shape.holes.push_back({{40.0, 20.0}, 60.0, 60.0, 60.0, 0.0});
+  if (with_mark) shape.holes.push_back({{-150.0, -100.0}, 12.0, 12.0, 12.0, 0.0});
+  shape.bend_curvature_per_mm = 1.0 / 1500.0;
+  shape.bend_axis_rad = 0.5;
+  shape.dents.push_back({{-90.0, 60.0}, 80.0, 2.5});  // no half turn leaves the bent plate as it is
+  return shape;
+}
+
+Trial uncut_rectangle(bool with_mark, std::uint64_t seed) {
+  synthetic::PlateShape shape = rectangle(with_mark);
+  shape.holes.erase(shape.holes.begin());
+  return scenes::trial_of(PlatePart(shape), whole_face(8000), seed);
+}
+
+/// Farthest that a place of the path comes to lie from where the material is.
+double most_off_mm(const PlatePart& drawn, const Registration& found, const RigidMotion& scan_from_cad) {
+  double most_mm = 0.0;
+  for (const synthetic::EdgePoint& edge : drawn.edge(0, 5.0))
+    most_mm = std::max(most_mm,
+                       (found.field->map(edge.nominal_mm).p_scan_mm - scan_from_cad * edge.true_mm).norm());
+  return most_mm;
+}
+
+TEST(RoleCut, AHalfTurnThatNothingTellsIsRefusedHoweverThePartIsBent) {
+  const CadModel cad = scenes::cad_of(PlatePart(rectangle(false)));
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Trial trial = uncut_rectangle(false, seed);
+    RegistrationOptions options = cut_options(PlatePart(rectangle(false)));
+    options.coarse.ambiguity_ratio = 1.0;  // whichever pose fits better: the dent alone says so
+    const Registration found = register_part(cad, trial.scan, options);
+    ASSERT_FALSE(found.refusals.empty()) << seed;
+    EXPECT_NE(found.refusals.front().find("two poses fit alike: turned by"), std::string::npos)
+        << found.refusals.front();
+    EXPECT_NE(found.refusals.front().find("scan.initial"), std::string::npos) << found.refusals.front();
+  }
+}
+
+TEST(RoleCut, AMarkInTheScanTellsTheHalfTurnsApart) {
+  const PlatePart drawn(rectangle(true));
+  const CadModel cad = scenes::cad_of(drawn);
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    Trial trial = uncut_rectangle(true, seed);
+    const Registration found = register_part(cad, trial.scan, cut_options(drawn));
+    ASSERT_TRUE(found.usable() && found.refusals.empty())
+        << (found.refusals.empty() ? "" : found.refusals.front());
+    EXPECT_LT(most_off_mm(drawn, found, trial.scan_from_cad), 0.6) << seed;
+  }
+  // Drawn, and not in the scan: it tells nothing.
+  Trial without = uncut_rectangle(false, 4);
+  EXPECT_FALSE(register_part(cad, without.scan, cut_options(drawn)).refusals.empty());
+}
+
+TEST(RoleCut, AnInitialPoseChoosesBetweenTheHalfTurns) {
+  const PlatePart drawn(rectangle(false));
+  const CadModel cad = scenes::cad_of(drawn);
+  synthetic::Random random(7);
+  Trial trial = uncut_rectangle(false, 1);
+  RegistrationOptions options = cut_options(drawn);
+  options.coarse.initial_scan_from_cad =
+      trial.scan_from_cad * scenes::disturbance(random, {0, 0, 0}, 0.09, 10.0);
+  const Registration found = register_part(cad, trial.scan, options);
+  ASSERT_TRUE(found.usable() && found.refusals.empty())
+      << (found.refusals.empty() ? "" : found.refusals.front());
+  EXPECT_LT(most_off_mm(drawn, found, trial.scan_from_cad), 0.6);
+}
+
 }  // namespace
 }  // namespace arris
