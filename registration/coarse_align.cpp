@@ -210,6 +210,7 @@ void CoarseSearch::refuse_no_start() {
 void CoarseSearch::refuse_no_fit(const PoseCandidate& best) {
   result_.reason = "no pose fits: the best one leaves " + millimetres(best.misfit.patient_mm) +
                    " mm between scan and part; is it this part, and does the scan show the contour?";
+  if (!options_.edges_needed) result_.reason += search_.free_by_surface(scan_, best.flip, best.scan_from_cad);
   result_.unit_ratio = unit_that_fits(cad_, scan_);
 }
 
