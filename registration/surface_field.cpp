@@ -54,7 +54,7 @@ MappedPoint SurfaceField::map(const Eigen::Vector3d& p_cad_mm) const {
   mapped.sd_mm = {sd_along_mm(row, shape.normal, -1), sd_along_mm(row, turn * inward, follow ? contour : -1),
                   sd_along_mm(row, turn * tangent, -1)};
   if (follow) mapped.sd_mm.y() = std::hypot(mapped.sd_mm.y(), fit_.scanner_sd_mm);
-  mapped.sd_axis_rad = sd_tilt_rad(foot.foot_mm, row, inward, shape.normal);
+  mapped.sd_axis_rad = sd_tilt_rad(row, inward, shape.normal);
   const double more_mm2 = unfollowed_mm2(row), wave_mm = 2.0 * fit_.basis->spacing_mm();
   mapped.sd_mm.x() = std::hypot(mapped.sd_mm.x(), std::sqrt(more_mm2));
   mapped.sd_axis_rad = std::hypot(
@@ -112,23 +112,13 @@ double SurfaceField::sd_along_mm(const BasisRow& row, const Eigen::Vector3d& dir
   return std::sqrt(std::max(0.0, variance));
 }
 
-double SurfaceField::sd_tilt_rad(const Eigen::Vector3d& foot_mm, const BasisRow& row,
-                                 const Eigen::Vector3d& inward, const Eigen::Vector3d& normal) const {
-  // Slope of the chord across the contour: the normal part of the difference of two shifts.
-  const double radius_mm = kTurnSpacings * fit_.basis->spacing_mm();
-  const SurfacePoint deep = cad_.surface.closest(foot_mm + radius_mm * inward, radius_mm);
+double SurfaceField::sd_tilt_rad(const BasisRow& row, const Eigen::Vector3d& inward,
+                                 const Eigen::Vector3d& normal) const {
+  // The field's own slope across the contour, known worse than the ring's chord: at a free edge the axis is
+  // off by what bends within the ring as well, of which the chord's covariance knows nothing.
   BasisRow slope = row;
-  if (deep.triangle >= 0) slope = fit_.basis->row(deep.foot_mm, cad_.smooth_normal(deep));
-  const double chord_mm = deep.triangle < 0 ? 0.0 : (deep.foot_mm - foot_mm).norm();
-  if (chord_mm < kFlatRatio * radius_mm || !slope.usable()) {  // no room: the field's own slope
-    slope = row;
-    for (BasisRow::Weights& w : slope.weight)
-      w[BasisRow::kValue] = row.t1.dot(inward) * w[BasisRow::kD1] + row.t2.dot(inward) * w[BasisRow::kD2];
-    return sd_along_mm(slope, normal, -1);
-  }
-  slope.node.insert(slope.node.end(), row.node.begin(), row.node.end());
-  for (const BasisRow::Weights& w : row.weight) slope.weight.push_back(-w);
-  for (BasisRow::Weights& w : slope.weight) w /= chord_mm;
+  for (BasisRow::Weights& w : slope.weight)
+    w[BasisRow::kValue] = row.t1.dot(inward) * w[BasisRow::kD1] + row.t2.dot(inward) * w[BasisRow::kD2];
   return sd_along_mm(slope, normal, -1);
 }
 

@@ -44,8 +44,8 @@ class SurfaceField final : public DeformationField {
   /// wide or as far as the material goes. The field's own slopes are worst at a free edge, where tools work:
   /// axes there were off three to five times as far by them.
   [[nodiscard]] Eigen::Matrix3d turn_about(const Eigen::Vector3d& foot_mm, const BasisRow& row) const;
-  [[nodiscard]] double sd_tilt_rad(const Eigen::Vector3d& foot_mm, const BasisRow& row,
-                                   const Eigen::Vector3d& inward, const Eigen::Vector3d& normal) const;
+  [[nodiscard]] double sd_tilt_rad(const BasisRow& row, const Eigen::Vector3d& inward,
+                                   const Eigen::Vector3d& normal) const;
 
   const CadModel& cad_;
   SurfaceFit fit_;
