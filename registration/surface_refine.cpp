@@ -202,10 +202,9 @@ class SurfaceFitter {
 
   /// From the mode of the edges' posterior to its mean and covariance.
   void average_edges() {
-    std::vector<EdgeSite> sites;
     for (int round = 0; round < kMostAverages; ++round) {
       const double stray_ratio = strips_->stray_ratio();
-      sites = strips_->sites(fit_.offset_mm, tau_mm_, stray_ratio);
+      std::vector<EdgeSite> sites = strips_->sites(fit_.offset_mm, tau_mm_, stray_ratio);
       if (sites.empty()) return;
       strips_->set_messages(sites);
       pass_messages(assemble(), stray_ratio, sites);
@@ -231,12 +230,12 @@ class SurfaceFitter {
         std::vector<Eigen::Vector3d> moved = fit_.shift_mm;
         const double by_mm = kElsewhereMm / kElsewhereSteps * step;
         for (Eigen::Vector3d& shift : moved) shift += by_mm * direction;
-        strips_->update(pairs_, moved, strip_reach_mm_, kGateSigmas * fit_.sigma_mm, options_.threads);
+        lay_strips(moved);
         if (strips_->seen_mm() <= most_mm || strips_->points_beyond() > beyond + kFewBeyond) continue;
         most_mm = strips_->seen_mm();
         best_mm = std::abs(by_mm);
       }
-    strips_->update(pairs_, fit_.shift_mm, strip_reach_mm_, kGateSigmas * fit_.sigma_mm, options_.threads);
+    lay_strips(fit_.shift_mm);
     return best_mm;
   }
 
@@ -337,7 +336,11 @@ class SurfaceFitter {
         std::max({residual_sigma_mm(pairs_, scale_mm_), 0.5 * scan_.noise_sigma_mm, kLeastSigmaMm});
     fit_.pairs = static_cast<std::size_t>(
         std::count_if(pairs_.begin(), pairs_.end(), [](const SurfacePair& pair) { return pair.on_face; }));
-    strips_->update(pairs_, fit_.shift_mm, strip_reach_mm_, kGateSigmas * fit_.sigma_mm, options_.threads);
+    lay_strips(fit_.shift_mm);
+  }
+
+  void lay_strips(const std::vector<Eigen::Vector3d>& shift_mm) {
+    strips_->update(pairs_, shift_mm, strip_reach_mm_, kGateSigmas * fit_.sigma_mm, options_.threads);
   }
 
   /// Sums add(begin, end, system) over fixed chunks, in their order.

@@ -133,12 +133,11 @@ void judge_edges(const CadModel& cad, const SurfaceField& field, const Registrat
     const double most_offset_mm = kMostOffsetSds * options.surface.offset_sd_mm + edge.edge_limit_mm();
     if (std::abs(offset_mm) > most_offset_mm) {
       char text[240];
-      std::snprintf(text, sizeof text,
-                    "contour %d: its edge lies %.2f mm %s the drawn one all round, at most %.2f: the part is "
-                    "of another "
-                    "size, was placed wrongly, or registration.surface.offset_sd_mm must be larger",
-                    curve.contour().id, std::abs(offset_mm), offset_mm > 0.0 ? "inside" : "outside",
-                    most_offset_mm);
+      std::snprintf(
+          text, sizeof text,
+          "contour %d: its edge lies %.2f mm %s the drawn one all round, at most %.2f: the part is "
+          "of another size, was placed wrongly, or registration.surface.offset_sd_mm must be larger",
+          curve.contour().id, std::abs(offset_mm), offset_mm > 0.0 ? "inside" : "outside", most_offset_mm);
       result.refusals.emplace_back(text);
       continue;
     }

@@ -25,10 +25,10 @@ struct SurfaceSystem {
   /// Adds slope * J to the gradient and curvature * J'J to the information; for least squares slope = weight
   /// * residual, curvature = weight.
   void add(const Row& row, double slope, double curvature);
+  /// Writes J' into a column of zeros.
+  void put(const Row& row, Eigen::Ref<Eigen::VectorXd> column) const;
   /// J x, and M J' of a symmetric matrix; they cost the row's nodes, not all unknowns.
   [[nodiscard]] double dot(const Row& row, const Eigen::VectorXd& x) const;
-  /// J' as a column of zeros.
-  void put(const Row& row, Eigen::Ref<Eigen::VectorXd> column) const;
   [[nodiscard]] Eigen::VectorXd times(const Eigen::MatrixXd& symmetric, const Row& row) const;
   SurfaceSystem& operator+=(const SurfaceSystem& other) {
     information += other.information;

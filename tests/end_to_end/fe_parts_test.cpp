@@ -198,8 +198,8 @@ TEST(FePartsDirty, WallsStraysAndGapsStillGiveAPath) {
   EXPECT_LT(error.max_mm, 3.0);
 }
 
-/// Two slots in a row, their ends partly missing from the scan: some millimetres along they look alike. Scan 9
-/// was once accepted 9 mm off, its slots' ends taken for gaps.
+/// Two slots in a row, their ends partly missing from the scan: some millimetres along they look alike. Scan
+/// 9 was once accepted 9 mm off, its slots' ends taken for gaps.
 TEST(FePartsDirty, ASlotThatSlidIsRefusedOrRight) {
   const Job job("fe/duct");
   synthetic::ScanOptions options;
