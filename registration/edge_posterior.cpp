@@ -1,10 +1,11 @@
 #include "registration/edge_posterior.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "registration/surface_factor.hpp"
 
 namespace arris {
 namespace {
@@ -41,7 +42,7 @@ EdgeMessage message_of(double mean_mm, double variance_mm2, double stray_ratio) 
 class SiteMarginals {
  public:
   SiteMarginals(const SurfaceSystem& fit, const std::vector<EdgeSite>& sites) {
-    const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> factor(fit.information);
+    const SurfaceFactor factor(fit);
     const Eigen::VectorXd move = -factor.solve(fit.gradient);
     const auto count = static_cast<Eigen::Index>(sites.size());
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(fit.gradient.size(), count);
@@ -52,7 +53,7 @@ class SiteMarginals {
       fit_mm_[i] = site.inside_mm + fit.dot(site.row, move);
       in_fit_.push_back(site.message);
     }
-    factor.matrixL().solveInPlace(columns);
+    factor.solve_lower(columns);
     spread_mm2_ = columns.transpose() * columns;
     mean_mm = fit_mm_;
     variance_mm2 = spread_mm2_.diagonal();

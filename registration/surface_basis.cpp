@@ -11,12 +11,22 @@ namespace arris {
 namespace {
 
 constexpr double kRadiusSpacings = 2.4;
+constexpr double kNextSpacings = 1.6;  // neighbours on the surface are at most so far apart
 constexpr double kCosSameSheet = 0.2;
 constexpr double kQuadraticRidge = 1e-6;  // of the moment matrix, on the second-order terms only
 constexpr double kWorstPivotRatio = 1e-9;
 constexpr std::size_t kFewestNodes = 6;
 constexpr std::size_t kUsualNodes = 32;    // that a row has, at most, on an evenly covered surface
 constexpr double kMostCellsASide = 100.0;  // contours may lie far apart; wider cells serve as well
+
+SurfaceNodes in_order(const SurfaceNodes& nodes, const std::vector<std::size_t>& order) {
+  SurfaceNodes ordered;
+  for (const std::size_t i : order) {
+    ordered.points_mm.push_back(nodes.points_mm[i]);
+    ordered.normals.push_back(nodes.normals[i]);
+  }
+  return ordered;
+}
 
 /// Wendland's C2 function; 1 at 0, 0 from q = 1 on.
 double wendland_c2(double q) {
@@ -28,7 +38,10 @@ double wendland_c2(double q) {
 }  // namespace
 
 SurfaceBasis::SurfaceBasis(SurfaceNodes nodes, double spacing_mm)
-    : nodes_(std::move(nodes)), spacing_mm_(spacing_mm), radius_mm_(kRadiusSpacings * spacing_mm) {
+    : nodes_(in_order(nodes, numbered_along(nodes.points_mm, kNextSpacings * spacing_mm))),
+      band_(std::make_shared<NodeBand>(band_of(nodes_.points_mm, 2.0 * kRadiusSpacings * spacing_mm))),
+      spacing_mm_(spacing_mm),
+      radius_mm_(kRadiusSpacings * spacing_mm) {
   if (nodes_.points_mm.empty()) return;
   Eigen::Vector3d high_mm = low_mm_ = nodes_.points_mm.front();
   for (const Eigen::Vector3d& p : nodes_.points_mm) {
@@ -62,27 +75,29 @@ BasisRow SurfaceBasis::row(const Eigen::Vector3d& p_cad_mm, const Eigen::Vector3
   row.t2 = frame.col(1);
   if (order_.empty()) return row;
   const Eigen::Array3i at = ((p_cad_mm - low_mm_) / cell_mm_).array().floor().cast<int>();
-  std::vector<double> weights;
   row.node.reserve(kUsualNodes);
-  row.weight.reserve(kUsualNodes);
-  weights.reserve(kUsualNodes);
   const Eigen::Array3i low = (at - 1).max(0), high = (at + 1).min(count_ - 1);
   for (int z = low.z(); z <= high.z(); ++z)
     for (int y = low.y(); y <= high.y(); ++y)
       for (int x = low.x(); x <= high.x(); ++x)
         for (std::uint32_t k = start_[cell_of(x, y, z)]; k < start_[cell_of(x, y, z) + 1]; ++k) {
-          const std::int32_t j = order_[k];
-          const Eigen::Vector3d apart = nodes_.points_mm[static_cast<std::size_t>(j)] - p_cad_mm;
-          const double weight = wendland_c2(apart.norm() / radius_mm_);
-          if (weight <= 0.0 || nodes_.normals[static_cast<std::size_t>(j)].dot(normal) < kCosSameSheet)
-            continue;
-          const double u = apart.dot(row.t1) / radius_mm_, v = apart.dot(row.t2) / radius_mm_;
-          BasisRow::Weights p;
-          p << 1.0, u, v, 0.5 * u * u, u * v, 0.5 * v * v;
-          row.node.push_back(j);
-          row.weight.push_back(p);
-          weights.push_back(weight);
+          const auto j = static_cast<std::size_t>(order_[k]);
+          if ((nodes_.points_mm[j] - p_cad_mm).norm() < radius_mm_ &&
+              nodes_.normals[j].dot(normal) >= kCosSameSheet)
+            row.node.push_back(order_[k]);
         }
+  std::sort(row.node.begin(), row.node.end());
+  std::vector<double> weights;
+  weights.reserve(row.node.size());
+  row.weight.reserve(row.node.size());
+  for (const std::int32_t j : row.node) {
+    const Eigen::Vector3d apart = nodes_.points_mm[static_cast<std::size_t>(j)] - p_cad_mm;
+    const double u = apart.dot(row.t1) / radius_mm_, v = apart.dot(row.t2) / radius_mm_;
+    BasisRow::Weights p;
+    p << 1.0, u, v, 0.5 * u * u, u * v, 0.5 * v * v;
+    row.weight.push_back(p);
+    weights.push_back(wendland_c2(apart.norm() / radius_mm_));
+  }
   Eigen::Matrix<double, 6, 6> moment = Eigen::Matrix<double, 6, 6>::Zero();
   double total = 0.0;
   for (std::size_t k = 0; k < weights.size(); ++k) {

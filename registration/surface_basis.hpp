@@ -3,8 +3,10 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "registration/node_band.hpp"
 #include "registration/surface_nodes.hpp"
 
 namespace arris {
@@ -16,8 +18,8 @@ struct BasisRow {
   using Weights = Eigen::Matrix<double, 6, 1>;
   Eigen::Vector3d t1 = Eigen::Vector3d::UnitX(), t2 = Eigen::Vector3d::UnitY();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
-  std::vector<std::int32_t> node;
-  std::vector<Weights> weight;  ///< one a node; 1/mm and 1/mm^2 for slopes and second derivatives
+  std::vector<std::int32_t> node;  ///< ascending
+  std::vector<Weights> weight;     ///< one a node; 1/mm and 1/mm^2 for slopes and second derivatives
 
   [[nodiscard]] bool usable() const { return !node.empty(); }
   /// sum over the nodes of weight[which] * value.
@@ -36,10 +38,13 @@ struct BasisRow {
 /// whose normal turns by more than about 80 degrees lie on another sheet and take no part.
 class SurfaceBasis {
  public:
+  /// The nodes are numbered anew, along the part.
   SurfaceBasis(SurfaceNodes nodes, double spacing_mm);
   [[nodiscard]] std::size_t size() const { return nodes_.points_mm.size(); }
   [[nodiscard]] double spacing_mm() const { return spacing_mm_; }
   [[nodiscard]] const SurfaceNodes& nodes() const { return nodes_; }
+  /// Nodes that share rows.
+  [[nodiscard]] const std::shared_ptr<const NodeBand>& band() const { return band_; }
   /// Row at a place of the surface with the given smooth normal; not usable() where fewer than six nodes are
   /// near or they do not determine a plane. Cost: some 25 nodes, one 6x6 solve; thread-safe.
   [[nodiscard]] BasisRow row(const Eigen::Vector3d& p_cad_mm, const Eigen::Vector3d& normal) const;
@@ -48,6 +53,7 @@ class SurfaceBasis {
   [[nodiscard]] std::size_t cell_of(int x, int y, int z) const;
 
   SurfaceNodes nodes_;
+  std::shared_ptr<const NodeBand> band_;
   double spacing_mm_, radius_mm_;
   double cell_mm_ = 1.0;  // of the grid that finds nodes
   Eigen::Vector3d low_mm_ = Eigen::Vector3d::Zero();

@@ -34,7 +34,8 @@ void find_partner(const CadModel& cad, const SurfaceBasis& basis,
                   const std::vector<Eigen::Vector3d>& shift_mm, double reach_mm, SurfacePair& pair) {
   if (pair.row.usable() && look_from_foot(shift_mm, pair) < kSameFootMm) return;
   pair.row = {};
-  const SurfacePoint foot = cad.surface.closest(pair.p_mm - pair.guess_mm, reach_mm);
+  const SurfacePoint foot = cad.surface.closest(pair.p_mm - pair.guess_mm, reach_mm, pair.triangle);
+  pair.triangle = foot.triangle;
   if (foot.triangle < 0) return;
   pair.foot_mm = foot.foot_mm;
   pair.on_border = foot.on_border;
@@ -89,17 +90,15 @@ double residual_sigma_mm(const std::vector<SurfacePair>& pairs, double scale_mm)
 
 void add_surface(const std::vector<SurfacePair>& pairs, std::size_t begin, std::size_t end, double sigma_mm,
                  double scale_mm, SurfaceSystem& system) {
-  SurfaceSystem::Row row;
+  std::vector<double> shares;
   for (std::size_t i = begin; i < end; ++i) {
     const SurfacePair& pair = pairs[i];
     if (!pair.on_face) continue;
-    row.node = &pair.row.node;
-    row.direction.clear();
-    for (const BasisRow::Weights& w : pair.row.weight)
-      row.direction.push_back(w[BasisRow::kValue] * pair.normal);
+    shares.clear();
+    for (const BasisRow::Weights& w : pair.row.weight) shares.push_back(w[BasisRow::kValue]);
     const double weight =
         geman_mcclure_weight(pair.residual_mm * pair.residual_mm, scale_mm) / (sigma_mm * sigma_mm);
-    system.add(row, -weight * pair.residual_mm, weight);
+    system.add_along(pair.row.node, shares, pair.normal, -weight * pair.residual_mm, weight);
   }
 }
 

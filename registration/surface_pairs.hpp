@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "acquisition/types/frames.hpp"
@@ -14,6 +15,7 @@ namespace arris {
 struct SurfacePair {
   BasisRow row;                                        ///< at the partner's nominal place
   Eigen::Vector3d foot_mm = Eigen::Vector3d::Zero();   ///< that place
+  std::int32_t triangle = -1;                          ///< it lies on this one; -1: no partner
   Eigen::Vector3d p_mm = Eigen::Vector3d::Zero();      ///< the scan point
   Eigen::Vector3d guess_mm = Eigen::Vector3d::Zero();  ///< shift at the last partner: where to look next
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();   ///< deformed

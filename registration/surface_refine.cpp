@@ -1,16 +1,17 @@
 #include "registration/surface_refine.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "acquisition/geometry/evenly_drawn.hpp"
 #include "acquisition/geometry/parallel_for.hpp"
 #include "acquisition/types/error.hpp"
 #include "registration/common_height.hpp"
 #include "registration/edge_strips.hpp"
+#include "registration/surface_factor.hpp"
 #include "registration/surface_pairs.hpp"
 
 namespace arris {
@@ -46,11 +47,6 @@ double area_mm2_of(const std::vector<SurfaceCell>& cells) {
   double area_mm2 = 0.0;
   for (const SurfaceCell& cell : cells) area_mm2 += cell.area_mm2;
   return area_mm2;
-}
-
-Eigen::MatrixXd inverse_of(const SurfaceSystem& system) {
-  const Eigen::Index n = system.gradient.size();
-  return Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>(system.information).solve(Eigen::MatrixXd::Identity(n, n));
 }
 
 class SurfaceFitter {
@@ -186,7 +182,7 @@ class SurfaceFitter {
     look();
     scale_mm_ = kScaleSigmas * fit_.sigma_mm;
     const SurfaceSystem system = assemble();
-    fit_.covariance = inverse_of(system);
+    fit_.covariance = SurfaceFactor(system).inverse(options_.threads);
     const double ratio = strips_->stray_ratio();
     const std::vector<EdgeClaim> claims = strips_->claims(fit_.offset_mm, tau_mm_, ratio);
     const auto resistance = [&](const Eigen::VectorXd& move, std::span<const std::size_t> without) {
@@ -213,7 +209,7 @@ class SurfaceFitter {
       look();
       if (moved_mm < settled_mm()) break;
     }
-    fit_.covariance = inverse_of(assemble());
+    fit_.covariance = SurfaceFactor(assemble()).inverse(options_.threads);
   }
 
   /// Edges that seem missing may lie elsewhere: a fit that slid too far along a slot sees the slot's ends as
@@ -348,9 +344,9 @@ class SurfaceFitter {
   SurfaceSystem summed(std::size_t count, const Add& add) const {
     const std::size_t chunk = std::max<std::size_t>(1, (count + kParts - 1) / kParts);
     return parallel_sum(count, chunk, options_.threads,
-                        SurfaceSystem(fit_.shift_mm.size(), fit_.offset_mm.size()),
+                        SurfaceSystem(fit_.basis->band(), fit_.offset_mm.size()),
                         [&](std::size_t begin, std::size_t end) {
-                          SurfaceSystem part(fit_.shift_mm.size(), fit_.offset_mm.size());
+                          SurfaceSystem part(fit_.basis->band(), fit_.offset_mm.size());
                           add(begin, end, part);
                           return part;
                         });
@@ -380,16 +376,13 @@ class SurfaceFitter {
 
   void add_weak_priors(SurfaceSystem& system) const {
     const double gauge = 1.0 / (kGaugeMm * kGaugeMm * static_cast<double>(system.nodes));
-    for (std::size_t j = 0; j < system.nodes; ++j) {
-      const Eigen::Index at = static_cast<Eigen::Index>(3 * j);
-      system.gradient.segment<3>(at) += gauge * fit_.shift_mm[j];
-      system.information.diagonal().segment<3>(at).array() += gauge;
-    }
+    for (std::size_t j = 0; j < system.nodes; ++j)
+      system.gradient.segment<3>(static_cast<Eigen::Index>(3 * j)) += gauge * fit_.shift_mm[j];
+    system.add_to_nodes(gauge);
     const double offset = 1.0 / (options_.offset_sd_mm * options_.offset_sd_mm);
     for (std::size_t e = 0; e < fit_.offset_mm.size(); ++e) {
-      const Eigen::Index at = static_cast<Eigen::Index>(3 * system.nodes + e);
-      system.gradient[at] += offset * fit_.offset_mm[e];
-      system.information(at, at) += offset;
+      system.gradient[static_cast<Eigen::Index>(3 * system.nodes + e)] += offset * fit_.offset_mm[e];
+      system.add_to_offset(e, offset);
     }
   }
 
@@ -397,9 +390,10 @@ class SurfaceFitter {
   double step() {
     SurfaceSystem system = assemble();
     const Eigen::Index n = static_cast<Eigen::Index>(3 * system.nodes);
-    system.information.diagonal().head(n).array() += 1.0 / (kProximalMm * kProximalMm);
-    const Eigen::VectorXd move =
-        -Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>(system.information).solve(system.gradient);
+    system.add_to_nodes(1.0 / (kProximalMm * kProximalMm));
+    const SurfaceFactor factor(system);
+    if (!factor.usable()) return std::numeric_limits<double>::quiet_NaN();
+    const Eigen::VectorXd move = -factor.solve(system.gradient);
     std::vector<Eigen::Vector3d> moved(system.nodes);
     for (std::size_t j = 0; j < moved.size(); ++j) {
       moved[j] = move.segment<3>(static_cast<Eigen::Index>(3 * j));

@@ -62,26 +62,26 @@ void SheetCell::add(const std::vector<Eigen::Vector3d>& shift_mm, const SheetPri
                                                inverse(1, 0) * f[0] + inverse(1, 1) * f[1]};
   const double share = area_mm2_ / (prior.patch_mm * prior.patch_mm);
   const double half_mm = 0.5 * prior.thickness_mm;
-  SurfaceSystem::Row strain{&row_.node, std::vector<Eigen::Vector3d>(row_.node.size()), -1, 0.0};
-  SurfaceSystem::Row bend = strain;
+  std::vector<Eigen::Matrix<double, 3, SurfaceSystem::kTogether>> derivative(row_.node.size());
+  SurfaceSystem::Residuals residual, weight;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t a = static_cast<std::size_t>(kPairs[k][0]), b = static_cast<std::size_t>(kPairs[k][1]);
+    const auto strain = static_cast<Eigen::Index>(k), bend = static_cast<Eigen::Index>(k + 3);
     const int second = BasisRow::kD11 + static_cast<int>(k);
     const Eigen::Vector3d bent = second_[k] + row_.combine(second, shift_mm);
-    const double bend_per_mm = shape.normal.dot(bent) - row_.normal.dot(second_[k]);
-    const double strain_ratio = 0.5 * (f[a].dot(f[b]) - (a == b ? 1.0 : 0.0)) + half_mm * bend_per_mm;
+    residual[bend] = shape.normal.dot(bent) - row_.normal.dot(second_[k]);
+    residual[strain] = 0.5 * (f[a].dot(f[b]) - (a == b ? 1.0 : 0.0)) + half_mm * residual[bend];
     const double gamma1 = dual[0].dot(bent), gamma2 = dual[1].dot(bent);
     for (std::size_t j = 0; j < row_.node.size(); ++j) {
       const BasisRow::Weights& w = row_.weight[j];
       const double d[2] = {w[BasisRow::kD1], w[BasisRow::kD2]};
-      bend.direction[j] = (w[second] - gamma1 * d[0] - gamma2 * d[1]) * shape.normal;
-      strain.direction[j] = 0.5 * (d[a] * f[b] + d[b] * f[a]) + half_mm * bend.direction[j];
+      derivative[j].col(bend) = (w[second] - gamma1 * d[0] - gamma2 * d[1]) * shape.normal;
+      derivative[j].col(strain) = 0.5 * (d[a] * f[b] + d[b] * f[a]) + half_mm * derivative[j].col(bend);
     }
-    const double strain_weight = kMultiplicity[k] * share / (prior.strain_ratio * prior.strain_ratio);
-    const double bend_weight = kMultiplicity[k] * share / (prior.bend_per_mm * prior.bend_per_mm);
-    system.add(strain, strain_weight * strain_ratio, strain_weight);
-    system.add(bend, bend_weight * bend_per_mm, bend_weight);
+    weight[strain] = kMultiplicity[k] * share / (prior.strain_ratio * prior.strain_ratio);
+    weight[bend] = kMultiplicity[k] * share / (prior.bend_per_mm * prior.bend_per_mm);
   }
+  system.add(row_.node, derivative, weight.cwiseProduct(residual), weight);
 }
 
 }  // namespace arris

@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <memory>
 #include <span>
 
 #include "fixtures/synthetic/random.hpp"
@@ -18,7 +19,7 @@ using Row = SurfaceSystem::Row;
 struct Quadratics {
   std::vector<std::int32_t> nodes{0, 1, 2};
   std::vector<EdgeClaim> claims;
-  SurfaceSystem all{3, 1};
+  SurfaceSystem all{std::make_shared<NodeBand>(NodeBand::full(3)), 1};
 
   explicit Quadratics(std::uint64_t seed, const std::vector<double>& slopes) {
     synthetic::Random random(seed);
@@ -36,14 +37,15 @@ struct Quadratics {
       claim.curvature = random.uniform(0.1, 2.0);
       claims.push_back(claim);
     }
-    all.information.diagonal().array() += 3.0;
+    add_prior();
     for (const EdgeClaim& claim : claims) all.add(claim.row, 0.0, claim.curvature);
   }
 
-  [[nodiscard]] Eigen::MatrixXd full() const {
-    const Eigen::MatrixXd lower = all.information.triangularView<Eigen::Lower>();
-    return lower.selfadjointView<Eigen::Lower>();
+  void add_prior() {
+    all.add_to_nodes(3.0);
+    all.add_to_offset(0, 3.0);
   }
+  [[nodiscard]] Eigen::MatrixXd full() const { return all.dense(); }
 
   /// Where the rest has its minimum, and how much lower that is, when some claims are let go.
   [[nodiscard]] std::pair<Eigen::VectorXd, double> solved_without(
@@ -97,8 +99,8 @@ TEST(EdgeClaims, TwoThatHoldAnEdgeTogetherAreJudgedTogether) {
     for (int k = 0; k < 3; ++k)  // both at the same place
       fit.claims[1].row.direction[static_cast<std::size_t>(k)] =
           fit.claims[0].row.direction[static_cast<std::size_t>(k)];
-    fit.all = SurfaceSystem(3, 1);
-    fit.all.information.diagonal().array() += 3.0;
+    fit.all = SurfaceSystem(fit.all.band, 1);
+    fit.add_prior();
     for (EdgeClaim& claim : fit.claims) {
       claim.curvature = 2.0;
       fit.all.add(claim.row, 0.0, claim.curvature);

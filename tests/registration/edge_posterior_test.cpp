@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <vector>
 
@@ -24,11 +25,10 @@ struct StraightEdge {
 
   /// Normal equations at x with the sites' messages.
   SurfaceSystem system(const Eigen::Vector2d& x, const std::vector<EdgeSite>& sites) const {
-    SurfaceSystem sum(1, 1);
-    sum.information(1, 1) = sum.information(2, 2) = 1.0;  // not used
+    SurfaceSystem sum(std::make_shared<NodeBand>(NodeBand::full(1)), 1);
     const double prior = 1.0 / (prior_sd_mm * prior_sd_mm);
-    sum.information(0, 0) += prior;
-    sum.information(3, 3) += prior;
+    sum.add_to_nodes(prior);  // of its three unknowns the first is used
+    sum.add_to_offset(0, prior);
     sum.gradient[0] += prior * x[1];
     sum.gradient[3] += prior * x[0] - density_per_mm;
     for (const EdgeSite& site : sites)
@@ -87,8 +87,7 @@ Moments by_messages(const StraightEdge& edge) {
   std::vector<EdgeSite> sites = edge.sites(x);
   pass_messages(edge.system(x, sites), edge.stray_ratio, sites);
   const SurfaceSystem system = edge.system(x, sites);
-  const Eigen::Matrix4d inverse =
-      Eigen::MatrixXd(system.information.selfadjointView<Eigen::Lower>()).inverse();
+  const Eigen::Matrix4d inverse = system.dense().inverse();
   const Eigen::Vector4d move = -inverse * system.gradient;
   Moments found;
   found.mean = {move[3], move[0]};

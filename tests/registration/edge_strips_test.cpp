@@ -64,10 +64,9 @@ TEST(EdgeStrips, WithoutStraysSaysHowFewThereMayBe) {
 TEST(EdgeStrips, ResistanceIsWhatTheTangentsLeaveOut) {
   const double stray_ratio = 1e-3;
   const Strip strip(0.0, 3);
-  SurfaceSystem tangents(strip.basis.size(), 1);
+  SurfaceSystem tangents(strip.basis.band(), 1);
   strip.strips.add(0, strip.strips.points().size(), {0.0}, kTauMm, stray_ratio, tangents);
-  const Eigen::MatrixXd lower = tangents.information.triangularView<Eigen::Lower>();
-  const Eigen::MatrixXd curvature = lower.selfadjointView<Eigen::Lower>();
+  const Eigen::MatrixXd curvature = tangents.dense();
   const auto cost = [&](double inside_mm) {
     const double seen = 1.0 / (1.0 + std::exp(-(inside_mm / kTauMm - 0.541)));
     return -std::log(seen + stray_ratio) + std::clamp(inside_mm, 0.0, kStripMm) / kStripMm;

@@ -132,7 +132,7 @@ TEST(SheetCell, ItsDerivativesAreThoseOfItsResiduals) {
     const Eigen::Vector3d e = cell.mid_strain(u, prior.thickness_mm) / prior.strain_ratio;
     return 0.5 * share * (e[0] * e[0] + 2.0 * e[1] * e[1] + e[2] * e[2]);
   };
-  SurfaceSystem system(plate.basis.size(), 0);
+  SurfaceSystem system(plate.basis.band(), 0);
   cell.add(shift_mm, prior, system);
   for (const std::int32_t j : cell.row().node)
     for (int axis = 0; axis < 3; ++axis) {
