@@ -17,7 +17,8 @@ constexpr double kJudgeStepMm = 5.0;    // and its uncertainty
 constexpr double kUnfollowedEdgeMm = 0.3,
                  kUnfollowedEdgeLimits = 2.0;  // rms; right fits leave half an edge limit
 constexpr double kMostOffsetSds = 2.0;
-constexpr double kSlideShare = 0.5;                   // of the worst variance: then the whole contour slides
+constexpr double kSlideShare = 0.5;  // of the worst variance: then the whole contour slides
+constexpr double kLeastSlideMm = 4.0, kLeastSlideSpacings = 1.5;  // a slide that is refused
 constexpr double kNearSpacings = 3.0, kNearMm = 3.0;  // a scan point this near makes a place "data"
 
 /// Edge of a contour that is not there yet: none.
@@ -154,8 +155,8 @@ void judge_edges(const CadModel& cad, const SurfaceField& field, const Registrat
 }
 
 /// A fit that slid along the part and took the edges it left behind for gaps.
-void judge_slide(const SurfaceField& field, Registration& result) {
-  if (field.fit().elsewhere_mm <= 0.0) return;
+void judge_slide(const SurfaceField& field, double spacing_mm, Registration& result) {
+  if (!is_slide(field.fit().elsewhere_mm, spacing_mm)) return;
   char text[200];
   std::snprintf(text, sizeof text,
                 "the edges would be seen much better with the part moved by %.0f mm: it was placed wrongly; "
@@ -165,6 +166,10 @@ void judge_slide(const SurfaceField& field, Registration& result) {
 }
 
 }  // namespace
+
+bool is_slide(double moved_mm, double spacing_mm) {
+  return moved_mm >= std::max(kLeastSlideMm, kLeastSlideSpacings * spacing_mm);
+}
 
 void deform_by_surface(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options,
                        Registration& result) {
@@ -190,7 +195,7 @@ void deform_by_surface(const CadModel& cad, const ScanModel& scan, const Registr
     seen.push_back(seen_along(scan, cad.contours[c], result.contours[c], options.role));
   if (options.role == ContourRole::kCut) judge_cut(cad, scan, seen, field->fit().sigma_mm, options, result);
   field->set_seen(std::move(seen));
-  judge_slide(*field, result);
+  judge_slide(*field, scan.spacing_mm, result);
   if (options.role == ContourRole::kEdge) judge_edges(cad, *field, options, result);
   judge_place(cad, *field, options, result);
   result.field = std::move(field);

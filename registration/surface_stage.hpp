@@ -11,4 +11,8 @@ namespace arris {
 void deform_by_surface(const CadModel& cad, const ScanModel& scan, const RegistrationOptions& options,
                        Registration& result);
 
+/// Whether a move of the part by so much, after which its edges would be seen much better, says that the fit
+/// slid: at least 4 mm and 1.5 point spacings. Less is within what a scan shows of an edge.
+[[nodiscard]] bool is_slide(double moved_mm, double spacing_mm);
+
 }  // namespace arris
