@@ -1,9 +1,11 @@
 #include "registration/coarse_align.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
+#include "acquisition/geometry/parallel_for.hpp"
 #include "registration/path_symmetry.hpp"
 #include "registration/pose_evidence.hpp"
 #include "registration/pose_search.hpp"
@@ -67,7 +69,9 @@ class CoarseSearch {
 
  private:
   [[nodiscard]] std::string near_initial() const;
-  [[nodiscard]] std::vector<PoseCandidate> proper(StartSource source, std::size_t refined) const;
+  /// The scan, or that with its other side up, made ready when first asked for.
+  [[nodiscard]] const LightScan& light(bool flip);
+  [[nodiscard]] std::vector<PoseCandidate> proper(StartSource source, std::size_t refined);
   [[nodiscard]] bool fits(const std::vector<PoseCandidate>& found, double cap_ratio) const {
     return !found.empty() &&
            beyond_spacing(found.front().misfit.patient_mm, scan_) <= cap_ratio * search_.score().cap_mm() &&
@@ -83,16 +87,22 @@ class CoarseSearch {
     return fits(found, kGoodCapRatio) && found.front().misfit.against_ratio <= kMostAgainstWhole &&
            beyond_spacing(found.front().misfit.strict_mm, scan_) <= kGoodCapRatio * search_.score().cap_mm();
   }
-  [[nodiscard]] std::vector<PoseCandidate> with_turned(std::vector<PoseCandidate> found) const;
+  [[nodiscard]] std::vector<PoseCandidate> with_turned(std::vector<PoseCandidate> found);
   [[nodiscard]] std::vector<PoseCandidate> all_candidates();
   void take(const PoseCandidate& best);
   void refuse_no_start();
   void refuse_no_fit(const PoseCandidate& best);
   [[nodiscard]] bool refuse_wrong_hand(const std::vector<PoseCandidate>& found);
   void judge_runner_up(const std::vector<PoseCandidate>& proper);
-  [[nodiscard]] bool comes_to(const PoseCandidate& best, const PoseCandidate& other) const;
+  /// Two poses of the same side fitted to the end. Those of the best one, and of others elsewhere, are kept:
+  /// what lies at the same place comes to the same end.
+  struct Settled {
+    PoseCandidate best, other;
+  };
+  [[nodiscard]] Settled settled(const PoseCandidate& best, const PoseCandidate& other);
+  [[nodiscard]] bool comes_to(const PoseCandidate& best, const PoseCandidate& other);
   [[nodiscard]] bool only_bending_decides(const PoseCandidate& best, const PoseCandidate& other,
-                                          const PathSymmetry& path) const;
+                                          const PathSymmetry& path);
   void refuse_ambiguous(const PoseCandidate& best, const PoseCandidate& other);
   void refuse_untold(const PoseCandidate& best, const PoseCandidate& other);
   [[nodiscard]] bool side_open() const { return scan_.side == SideKnown::kNo; }
@@ -101,6 +111,10 @@ class CoarseSearch {
   const ScanModel& scan_;
   const CoarseAlignOptions& options_;
   PoseSearch search_;
+  std::array<std::optional<LightScan>, 2> light_;
+  std::vector<RigidMotion> self_motions_;
+  std::optional<PoseCandidate> settled_best_;
+  std::vector<std::pair<PoseCandidate, PoseCandidate>> settled_others_;  ///< as found, and at the end
   CoarseAlignment result_;
 };
 
@@ -136,7 +150,7 @@ CoarseAlignment CoarseSearch::from_initial() {
   PoseCandidate best;
   for (const bool flip : {false, true}) {
     if (flip && !side_open()) break;  // else the pose decides which side the normals are on
-    PoseCandidate refined = search_.refine(LightScan(scan_, flip, false), initial);
+    PoseCandidate refined = search_.refine(light(flip), initial);
     refined.flip = flip;
     if (refined.misfit.patient_mm < best.misfit.patient_mm) best = refined;
   }
@@ -156,24 +170,31 @@ CoarseAlignment CoarseSearch::from_initial() {
   return result_;
 }
 
+const LightScan& CoarseSearch::light(bool flip) {
+  std::optional<LightScan>& made = light_[flip ? 1 : 0];
+  if (!made) made.emplace(scan_, flip, false);
+  return *made;
+}
+
 /// The poses of the scan as it is and, when nothing says which side was seen, with the other side up.
-std::vector<PoseCandidate> CoarseSearch::proper(StartSource source, std::size_t refined) const {
-  std::vector<PoseCandidate> found = search_.candidates(LightScan(scan_, false, false), source, refined);
+std::vector<PoseCandidate> CoarseSearch::proper(StartSource source, std::size_t refined) {
+  std::vector<PoseCandidate> found = search_.candidates(light(false), source, refined);
   if (!side_open()) return found;
-  std::vector<PoseCandidate> flipped = search_.candidates(LightScan(scan_, true, false), source, refined);
+  std::vector<PoseCandidate> flipped = search_.candidates(light(true), source, refined);
   for (PoseCandidate& candidate : flipped) candidate.flip = true;
   found.insert(found.end(), flipped.begin(), flipped.end());
   sort_by_misfit(found);
   return found;
 }
 
-std::vector<PoseCandidate> CoarseSearch::with_turned(std::vector<PoseCandidate> found) const {
+std::vector<PoseCandidate> CoarseSearch::with_turned(std::vector<PoseCandidate> found) {
   if (found.empty() || !found.front().usable()) return found;
-  const LightScan light(scan_, found.front().flip, false);
-  const std::vector<PoseCandidate> more = search_.turned(light, found.front());
+  self_motions_ = search_.self_motions();
+  const LightScan& scan = light(found.front().flip);
+  const std::vector<PoseCandidate> more = search_.turned(scan, found.front(), self_motions_);
   found.insert(found.end(), more.begin(), more.end());
   sort_by_misfit(found);
-  const PoseCandidate settled = search_.settled(light, found.front());  // it may be on its way along an oval
+  const PoseCandidate settled = search_.settled(scan, found.front());  // it may be on its way along an oval
   if (settled.misfit.patient_mm < found.front().misfit.patient_mm) found.front() = settled;
   sort_by_misfit(found);
   return found;
@@ -230,8 +251,7 @@ bool CoarseSearch::refuse_wrong_hand(const std::vector<PoseCandidate>& found) {
            beyond_spacing(others.front().misfit.patient_mm, scan_) < kMirrorBetterRatio * left_mm;
   };
   result_.mirrored = fits_better(mirrored);
-  result_.inverted =
-      fits_better(search_.candidates(LightScan(scan_, true, false), StartSource::kLoops, refined));
+  result_.inverted = fits_better(search_.candidates(light(true), StartSource::kLoops, refined));
   if (!result_.mirrored && !result_.inverted) return false;
   result_.reason = result_.mirrored
                        ? "the mirror image of the scan fits the part and the scan itself does not"
@@ -252,18 +272,32 @@ void CoarseSearch::refuse_ambiguous(const PoseCandidate& best, const PoseCandida
   if (!options_.edges_needed) result_.reason += search_.free_by_surface(scan_, best.flip, best.scan_from_cad);
 }
 
+CoarseSearch::Settled CoarseSearch::settled(const PoseCandidate& best, const PoseCandidate& other) {
+  for (const auto& [found, at_the_end] : settled_others_)
+    if (found.flip == other.flip && search_.same_place(found, other)) return {*settled_best_, at_the_end};
+  const LightScan& scan = light(best.flip);
+  Settled both;
+  parallel_for(settled_best_ ? 1 : 2, 1, options_.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      (i == 0 ? both.other : both.best) = search_.settled(scan, i == 0 ? other : best);
+  });
+  if (settled_best_) both.best = *settled_best_;
+  settled_best_ = both.best;
+  settled_others_.emplace_back(other, both.other);
+  return both;
+}
+
 /// Whether two poses are one when both are fitted to the end.
-bool CoarseSearch::comes_to(const PoseCandidate& best, const PoseCandidate& other) const {
+bool CoarseSearch::comes_to(const PoseCandidate& best, const PoseCandidate& other) {
   if (best.flip != other.flip) return false;
-  const LightScan light(scan_, best.flip, false);
-  const PoseCandidate a = search_.settled(light, best), b = search_.settled(light, other);
+  const auto [a, b] = settled(best, other);
   return a.usable() && b.usable() && search_.same_place(a, b);
 }
 
 /// Whether the other pose is a fit as well and lays the drawing's contours, as far as the scan shows them,
 /// where the best one does, but not the path: its worse score comes from how the part is bent, or from noise.
 bool CoarseSearch::only_bending_decides(const PoseCandidate& best, const PoseCandidate& other,
-                                        const PathSymmetry& path) const {
+                                        const PathSymmetry& path) {
   const double fits_mm = kFitsCapRatio * search_.score().cap_mm();
   const double most_mm = std::max(fits_mm, kAlsoFitsRatio * beyond_spacing(best.misfit.patient_mm, scan_));
   const auto fits_too = [&](const PoseCandidate& pose) {
@@ -271,10 +305,9 @@ bool CoarseSearch::only_bending_decides(const PoseCandidate& best, const PoseCan
            not_contradicted(pose);
   };
   if (!fits_too(other)) return false;
-  const LightScan light(scan_, best.flip, false);
-  const PoseCandidate a = search_.settled(light, best), b = search_.settled(light, other);
+  const auto [a, b] = settled(best, other);
   if (!a.usable() || !fits_too(b)) return false;
-  const std::optional<RigidMotion> motion = search_.self_motion_between(a, b);
+  const std::optional<RigidMotion> motion = search_.self_motion_between(a, b, self_motions_);
   if (!motion || path.maps_onto_itself(*motion)) return false;
   const double size_mm = search_.score().size_mm();
   const PoseTolerance tolerance = pose_tolerance(scan_.spacing_mm, size_mm, fits_mm);
@@ -282,8 +315,9 @@ bool CoarseSearch::only_bending_decides(const PoseCandidate& best, const PoseCan
   // A path round the edges that are seen goes where they are, nearly the same from either pose.
   if (options_.edges_needed && path.farthest_off_mm(*motion) <= tolerance.in_face_mm + within_mm)
     return false;
-  return lays_shown_on_itself(cad_, light, a.scan_from_cad, *motion, tolerance, within_mm) &&
-         !edges_tell_apart(cad_, light, a.scan_from_cad, b.scan_from_cad, tolerance);
+  const LightScan& scan = light(best.flip);
+  return lays_shown_on_itself(cad_, scan, a.scan_from_cad, *motion, tolerance, within_mm) &&
+         !edges_tell_apart(cad_, scan, a.scan_from_cad, b.scan_from_cad, tolerance);
 }
 
 void CoarseSearch::refuse_untold(const PoseCandidate& best, const PoseCandidate& other) {

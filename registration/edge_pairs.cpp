@@ -7,11 +7,25 @@
 
 namespace arris {
 
-EdgePair pair_edge(const CadModel& cad, const Eigen::Vector3d& p_cad_mm, double reach_mm) {
+namespace {
+
+/// A little more than what the hint is away now: nothing beyond it can be the answer.
+double reach_by(const CadModel& cad, const Eigen::Vector3d& p_cad_mm, double reach_mm, const EdgePair& hint) {
+  constexpr double kRounding = 1e-9;
+  if (hint.contour < 0) return reach_mm;
+  const Curve& curve = cad.contours[static_cast<std::size_t>(hint.contour)];
+  return std::min(reach_mm, (1.0 + kRounding) * curve.to_segment_mm(hint.foot.segment, p_cad_mm) + kRounding);
+}
+
+}  // namespace
+
+EdgePair pair_edge(const CadModel& cad, const Eigen::Vector3d& p_cad_mm, double reach_mm,
+                   const EdgePair& hint) {
   EdgePair pair;
-  pair.foot.distance_mm = reach_mm;
+  pair.foot.distance_mm = reach_by(cad, p_cad_mm, reach_mm, hint);
   for (std::size_t c = 0; c < cad.contours.size(); ++c) {
-    const CurveFoot foot = cad.contours[c].nearest_within(p_cad_mm, pair.foot.distance_mm);
+    const int segment = static_cast<int>(c) == hint.contour ? hint.foot.segment : -1;
+    const CurveFoot foot = cad.contours[c].nearest_within(p_cad_mm, pair.foot.distance_mm, segment);
     if (foot.segment < 0) continue;
     pair.contour = static_cast<int>(c);
     pair.foot = foot;
@@ -24,6 +38,11 @@ EdgePair pair_edge(const CadModel& cad, const Eigen::Vector3d& p_cad_mm, double 
   pair.across_mm = apart.dot(pair.across);
   pair.normal_mm = apart.dot(pair.normal);
   return pair;
+}
+
+bool near_contours(const CadModel& cad, const Eigen::Vector3d& p_cad_mm, double reach_mm) {
+  return std::any_of(cad.contours.begin(), cad.contours.end(),
+                     [&](const Curve& curve) { return curve.is_within(p_cad_mm, reach_mm); });
 }
 
 std::vector<LoopAssignment> assign_loops(const CadModel& cad, const std::vector<Contour>& loops,

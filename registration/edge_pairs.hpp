@@ -18,8 +18,13 @@ struct EdgePair {
   double normal_mm = 0.0;  ///< signed, out of the material
 };
 
-/// Nearest contour and the two components across the tangent; contour -1 beyond reach_mm.
-[[nodiscard]] EdgePair pair_edge(const CadModel& cad, const Eigen::Vector3d& p_cad_mm, double reach_mm);
+/// Nearest contour and the two components across the tangent; contour -1 beyond reach_mm. `hint`: an earlier
+/// answer of a point that has moved a little; it makes the search quicker and changes nothing.
+[[nodiscard]] EdgePair pair_edge(const CadModel& cad, const Eigen::Vector3d& p_cad_mm, double reach_mm,
+                                 const EdgePair& hint = {});
+
+/// Whether a contour passes nearer than reach_mm: quicker than pair_edge().
+[[nodiscard]] bool near_contours(const CadModel& cad, const Eigen::Vector3d& p_cad_mm, double reach_mm);
 
 /// Points of one scan loop, and whether the loop runs along an accepted contour.
 struct LoopAssignment {

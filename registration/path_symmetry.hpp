@@ -26,10 +26,13 @@ class PathSymmetry {
     Eigen::Vector3d tip_mm, axis;
   };
   struct Foot {
-    Eigen::Vector3d foot_mm, tangent, axis;
-    double distance_mm = 1e300;
+    std::size_t curve = 0;
+    CurveFoot at;
   };
-  [[nodiscard]] Foot nearest(const Eigen::Vector3d& p_mm) const;
+  /// `hint`: an earlier answer of a place that has moved a little; it changes nothing.
+  [[nodiscard]] Foot nearest(const Eigen::Vector3d& p_mm, const Foot& hint) const;
+  /// Whether every place lies so near the path that settling could bring it there.
+  [[nodiscard]] bool may_settle(const RigidMotion& motion) const;
   /// The motion nearest to a start that lays the places on the path.
   [[nodiscard]] RigidMotion settled(RigidMotion motion) const;
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <queue>
 
 #include "acquisition/geometry/parallel_for.hpp"
 #include "registration/edge_pairs.hpp"
@@ -18,11 +20,20 @@ constexpr double kTellingRatio = 0.5;  // of the longest followed contour: a sma
 constexpr double kSelfFitsRatio = 0.2;     // of the contour's size: the drawing nearly lies on itself
 constexpr double kSelfLengthRatio = 1.15;  // of two of its contours
 constexpr std::size_t kMostTurned = 4, kMostSelfMotions = 100;
-constexpr std::size_t kEdgeSample = 120;
+constexpr std::size_t kEdgeSample = 120, kScoredTogether = 4;
 constexpr int kIcpRounds = 14, kMoreRefinements = 3, kSettlingRounds = 150;
 constexpr double kFirstReachRatio = 2.0, kSecondReachRatio = 0.5;  // of the cap: edge points that take part
 constexpr double kReachSpacings = 2.5;
+constexpr double kStillInItRatio = 2.0;  // of what the best pose leaves: worse ones are not refined further
 constexpr double kSamePlaceRatio = 0.06, kSameStartRatio = 0.15;  // of the contour's size
+
+/// A start by its score, or by what that is at least: those are looked at first.
+struct RankedStart {
+  double misfit_mm = 0.0;
+  bool is_score = false;
+  std::size_t start = 0;
+  auto operator<=>(const RankedStart&) const = default;
+};
 
 /// The loops that no operator has rejected.
 std::vector<Contour> not_rejected(const ScanModel& scan) {
@@ -63,7 +74,7 @@ ScanModel PoseSearch::along_contours(const LightScan& light, const RigidMotion& 
   for (std::size_t l = 0; l < scan.loops.size(); ++l)
     if (assigned[l].contour >= 0)
       for (const Eigen::Vector3d& p : scan.loops[l].points_mm)
-        if (pair_edge(cad_, cad_from_scan * p, reach_mm).contour >= 0) edges.push_back(p);
+        if (near_contours(cad_, cad_from_scan * p, reach_mm)) edges.push_back(p);
   if (edges.empty()) edges = scan.edge_mm;
   return {scan.points_mm,  scan.normals,        NearestPoints({}), {}, every(edges, kEdgeSample), {},
           scan.spacing_mm, scan.noise_sigma_mm, scan.side};
@@ -92,9 +103,13 @@ double PoseSearch::near_mm(const LightScan& scan) const {
   return std::max(kSecondReachRatio * score_.cap_mm(), kReachSpacings * scan.model.spacing_mm);
 }
 
-PoseCandidate PoseSearch::refine(const LightScan& scan, const RigidMotion& start) const {
-  PoseCandidate best = refined(scan, start, kFirstReachRatio * score_.cap_mm(), kIcpRounds);
+PoseCandidate PoseSearch::refine(const LightScan& scan, const RigidMotion& start, double most_mm) const {
+  return refined_further(scan, refined(scan, start, kFirstReachRatio * score_.cap_mm(), kIcpRounds), most_mm);
+}
+
+PoseCandidate PoseSearch::refined_further(const LightScan& scan, PoseCandidate best, double most_mm) const {
   const double reach_mm = near_mm(scan);
+  if (best.misfit.patient_mm > most_mm) return best;
   for (int again = 0; again < kMoreRefinements && best.usable() && best.misfit.patient_mm > reach_mm / 2.0;
        ++again) {
     PoseCandidate next = refined(scan, best.scan_from_cad, reach_mm, kIcpRounds);
@@ -164,20 +179,24 @@ std::vector<RigidMotion> PoseSearch::self_motions() const {
   return best;
 }
 
-std::vector<PoseCandidate> PoseSearch::turned(const LightScan& scan, const PoseCandidate& candidate) const {
-  std::vector<PoseCandidate> found;
-  for (const RigidMotion& motion : self_motions()) {
-    found.push_back(refine(scan, candidate.scan_from_cad * motion));
-    found.back().flip = candidate.flip;
-  }
+std::vector<PoseCandidate> PoseSearch::turned(const LightScan& scan, const PoseCandidate& candidate,
+                                              std::span<const RigidMotion> self_motions) const {
+  std::vector<PoseCandidate> found(self_motions.size());
+  parallel_for(found.size(), 1, threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      found[i] = refine(scan, candidate.scan_from_cad * self_motions[i],
+                        kStillInItRatio * candidate.misfit.patient_mm);
+      found[i].flip = candidate.flip;
+    }
+  });
   return found;
 }
 
-std::optional<RigidMotion> PoseSearch::self_motion_between(const PoseCandidate& a,
-                                                           const PoseCandidate& b) const {
+std::optional<RigidMotion> PoseSearch::self_motion_between(const PoseCandidate& a, const PoseCandidate& b,
+                                                           std::span<const RigidMotion> self_motions) const {
   std::optional<RigidMotion> nearest;
   double least_mm = kSameStartRatio * score_.size_mm();
-  for (const RigidMotion& motion : self_motions()) {
+  for (const RigidMotion& motion : self_motions) {
     const double off_mm = moved_mm(a.scan_from_cad * motion, b.scan_from_cad);
     if (off_mm >= least_mm) continue;
     nearest = motion;
@@ -193,25 +212,49 @@ double PoseSearch::moved_mm(const RigidMotion& a, const RigidMotion& b) const {
   return moved;
 }
 
-std::vector<PoseCandidate> PoseSearch::candidates(const LightScan& scan, StartSource source,
-                                                  std::size_t refined) const {
-  const std::vector<RigidMotion> motions = starts(scan, source);
-  std::vector<std::pair<double, std::size_t>> order(motions.size());
-  parallel_for(motions.size(), 1, threads_, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) order[i] = {score_.of_start(scan, motions[i]).patient_mm, i};
+std::vector<RigidMotion> PoseSearch::best_apart(const LightScan& scan, const std::vector<RigidMotion>& starts,
+                                                std::size_t count) const {
+  std::vector<RankedStart> ranked(starts.size());
+  parallel_for(starts.size(), 1, threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      ranked[i] = {score_.least_of_start_mm(scan, starts[i]), false, i};
   });
-  std::sort(order.begin(), order.end());
-  std::vector<RigidMotion> chosen;  // several starts of one pose would crowd out the runner-up
-  for (const auto& [misfit_mm, i] : order) {
-    const bool is_new = std::none_of(chosen.begin(), chosen.end(), [&, i = i](const RigidMotion& other) {
-      return moved_mm(motions[i], other) < kSameStartRatio * score_.size_mm();
+  std::priority_queue<RankedStart, std::vector<RankedStart>, std::greater<>> queue(std::greater<>(),
+                                                                                   std::move(ranked));
+  std::vector<RigidMotion> chosen;
+  const auto is_new = [&](std::size_t i) {
+    return std::none_of(chosen.begin(), chosen.end(), [&](const RigidMotion& other) {
+      return moved_mm(starts[i], other) < kSameStartRatio * score_.size_mm();
     });
-    if (is_new) chosen.push_back(motions[i]);
-    if (chosen.size() == refined) break;
+  };
+  while (!queue.empty() && chosen.size() < count) {
+    std::vector<RankedStart> bounded;  // those next in turn of which only a bound is known
+    for (; !queue.empty() && !queue.top().is_score && bounded.size() < kScoredTogether; queue.pop())
+      if (is_new(queue.top().start)) bounded.push_back(queue.top());
+    parallel_for(bounded.size(), 1, threads_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k)
+        bounded[k] = {score_.of_start(scan, starts[bounded[k].start]).patient_mm, true, bounded[k].start};
+    });
+    for (const RankedStart& start : bounded) queue.push(start);
+    if (!bounded.empty() || queue.empty() || !queue.top().is_score) continue;
+    if (is_new(queue.top().start)) chosen.push_back(starts[queue.top().start]);
+    queue.pop();
   }
+  return chosen;
+}
+
+std::vector<PoseCandidate> PoseSearch::candidates(const LightScan& scan, StartSource source,
+                                                  std::size_t refined, double known_mm) const {
+  const std::vector<RigidMotion> chosen = best_apart(scan, starts(scan, source), refined);
   std::vector<PoseCandidate> found(chosen.size());
   parallel_for(chosen.size(), 1, threads_, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) found[i] = refine(scan, chosen[i]);
+    for (std::size_t i = begin; i < end; ++i)
+      found[i] = this->refined(scan, chosen[i], kFirstReachRatio * score_.cap_mm(), kIcpRounds);
+  });
+  for (const PoseCandidate& pose : found) known_mm = std::min(known_mm, pose.misfit.patient_mm);
+  parallel_for(found.size(), 1, threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      found[i] = refined_further(scan, std::move(found[i]), kStillInItRatio * known_mm);
   });
   sort_by_misfit(found);
   return found;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,22 +33,26 @@ class PoseSearch {
   PoseSearch(const CadModel& cad, double band_mm, int threads);
 
   [[nodiscard]] const PoseScore& score() const { return score_; }
-  /// Short rigid ICP from a start, and where that leaves much a second one with the edge points that it
-  /// brought near; not usable() where no points are near.
-  [[nodiscard]] PoseCandidate refine(const LightScan& scan, const RigidMotion& start) const;
+  /// Short rigid ICP from a start, and where that leaves much, but not more than most_mm, further ones with
+  /// the edge points that it brought near; not usable() where no points are near.
+  [[nodiscard]] PoseCandidate refine(const LightScan& scan, const RigidMotion& start,
+                                     double most_mm = 1e300) const;
   /// The same pose after a long rigid ICP: two that were stopped on their way along an oval come together.
   [[nodiscard]] PoseCandidate settled(const LightScan& scan, const PoseCandidate& candidate) const;
-  /// The best distinct poses, best first: at most `refined` starts that lie apart are refined.
+  /// The best distinct poses, best first: at most `refined` starts that lie apart are refined, those that
+  /// leave far more than the best of them, or than a pose that leaves known_mm, only coarsely.
   [[nodiscard]] std::vector<PoseCandidate> candidates(const LightScan& scan, StartSource source,
-                                                      std::size_t refined) const;
-  /// The poses that differ from one by a motion which lays the drawing's contours nearly on themselves: where
-  /// the starts missed the right one of them, this finds it.
-  [[nodiscard]] std::vector<PoseCandidate> turned(const LightScan& scan,
-                                                  const PoseCandidate& candidate) const;
+                                                      std::size_t refined, double known_mm = 1e300) const;
+  /// Motions that lay the drawing's contours nearly on themselves, best first; without the identity.
+  [[nodiscard]] std::vector<RigidMotion> self_motions() const;
+  /// The poses that differ from one by such a motion: where the starts missed the right one of them, this
+  /// finds it.
+  [[nodiscard]] std::vector<PoseCandidate> turned(const LightScan& scan, const PoseCandidate& candidate,
+                                                  std::span<const RigidMotion> self_motions) const;
   /// The one of those motions that the second pose is nearly turned by from the first; none: they are no two
   /// ways to lay the part.
-  [[nodiscard]] std::optional<RigidMotion> self_motion_between(const PoseCandidate& a,
-                                                               const PoseCandidate& b) const;
+  [[nodiscard]] std::optional<RigidMotion> self_motion_between(
+      const PoseCandidate& a, const PoseCandidate& b, std::span<const RigidMotion> self_motions) const;
   /// In words, what the surface alone leaves free near a pose: where no edge holds the part it slides. Empty:
   /// nothing.
   [[nodiscard]] std::string free_by_surface(const ScanModel& scan, bool flip, const RigidMotion& start) const;
@@ -60,10 +65,15 @@ class PoseSearch {
                                          double reach_mm) const;
   [[nodiscard]] PoseCandidate refined(const LightScan& scan, const RigidMotion& start, double reach_mm,
                                       int rounds) const;
+  /// Further ICPs where a pose leaves much, but not more than most_mm.
+  [[nodiscard]] PoseCandidate refined_further(const LightScan& scan, PoseCandidate best,
+                                              double most_mm) const;
   [[nodiscard]] double near_mm(const LightScan& scan) const;
   [[nodiscard]] std::vector<RigidMotion> starts(const LightScan& scan, StartSource source) const;
-  /// Motions that lay the drawing's contours nearly on themselves, best first; without the identity.
-  [[nodiscard]] std::vector<RigidMotion> self_motions() const;
+  /// The best starts that lie apart: several of one pose would crowd out the runner-up.
+  [[nodiscard]] std::vector<RigidMotion> best_apart(const LightScan& scan,
+                                                    const std::vector<RigidMotion>& starts,
+                                                    std::size_t count) const;
   [[nodiscard]] double self_misfit_mm(const RigidMotion& motion) const;
   [[nodiscard]] double moved_mm(const RigidMotion& a, const RigidMotion& b) const;
 

@@ -47,7 +47,7 @@ std::vector<std::size_t> drop_other_loops(const CadModel& cad, ScanModel& scan,
       continue;
     }
     for (std::size_t i = 0; i < scan.loops[l].points_mm.size(); ++i) {
-      if (pair_edge(cad, cad_from_scan * scan.loops[l].points_mm[i], near_mm).contour < 0) continue;
+      if (!near_contours(cad, cad_from_scan * scan.loops[l].points_mm[i], near_mm)) continue;
       scan.edge_mm.push_back(scan.loops[l].points_mm[i]);
       scan.edge_normals.push_back(scan.loops[l].normals[i]);
     }

@@ -21,6 +21,8 @@ constexpr double kDamping = 1e-4;                 // of the largest eigenvalue
 constexpr double kFreeEigenvalueRatio = 1e-4;     // of the largest: a direction that the data leave free
 constexpr double kStretchMm = 80.0;               // of contour: misfit farther apart counts as independent
 constexpr double kFewestStretches = 8.0, kMostStretches = 24.0;
+constexpr double kStillMm = 1e-4;
+constexpr std::size_t kLongestCycle = 6;  // rounds: partners may flip to and fro for ever
 constexpr std::size_t kChunk = 256;
 
 /// Scan points that can belong to the band around the contours at the start pose, thinned to a fixed count.
@@ -30,7 +32,7 @@ std::vector<std::size_t> band_sample(const CadModel& cad, const ScanModel& scan,
   const double reach_mm = options.band_mm + options.start_scale_mm;
   parallel_for(scan.points_mm.size(), 4 * kChunk, options.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      in_band[i] = pair_edge(cad, cad_from_scan * scan.points_mm[i], reach_mm).contour >= 0 ? 1 : 0;
+      in_band[i] = near_contours(cad, cad_from_scan * scan.points_mm[i], reach_mm) ? 1 : 0;
   });
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < in_band.size(); ++i)
@@ -99,7 +101,7 @@ class PointToPlane {
       const double moved_mm = step(round);
       const bool scale_settled = scale_mm_ <= floor_mm_ * 1.001;
       const double change = std::abs(last_rms - result.rms_mm) / std::max(result.rms_mm, 1e-9);
-      if (scale_settled && (change < options_.stop_change_ratio || moved_mm < 1e-4)) {
+      if (scale_settled && (change < options_.stop_change_ratio || moved_mm < kStillMm || comes_back())) {
         result.stop = "converged";
         break;
       }
@@ -126,7 +128,7 @@ class PointToPlane {
     });
     parallel_for(edges_.size(), kChunk, options_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        edges_[i] = pair_edge(cad_, cad_from_scan_ * scan_.edge_mm[i], reach_mm);
+        edges_[i] = pair_edge(cad_, cad_from_scan_ * scan_.edge_mm[i], reach_mm, edges_[i]);
     });
   }
 
@@ -255,13 +257,28 @@ class PointToPlane {
         along[i] = -gradient[i] / (eigen.eigenvalues()[i] + kDamping * largest);
     const Eigen::Matrix<double, 6, 1> delta = scale.cwiseProduct(eigen.eigenvectors() * along);
     cad_from_scan_ = motion_of(delta, pivot_) * cad_from_scan_;
-    return delta.tail<3>().norm() + delta.head<3>().norm() / scale[0];
+    reach_mm_ = 1.0 / scale[0];
+    return delta.tail<3>().norm() + delta.head<3>().norm() * reach_mm_;
+  }
+
+  /// Whether the motion is again that of some rounds before: then the rounds between repeat for ever.
+  [[nodiscard]] bool comes_back() {
+    const bool again = std::any_of(past_.begin(), past_.end(), [&](const RigidMotion& past) {
+      const RigidMotion since = cad_from_scan_ * past.inverse();
+      const Eigen::Matrix3d turn = since.linear() - Eigen::Matrix3d::Identity();
+      return (since * pivot_ - pivot_).norm() + reach_mm_ * turn.norm() < kStillMm;
+    });
+    past_.push_back(cad_from_scan_);
+    if (past_.size() > kLongestCycle) past_.erase(past_.begin());
+    return again;
   }
 
   const CadModel& cad_;
   const ScanModel& scan_;
   const RigidIcpOptions& options_;
   RigidMotion cad_from_scan_;
+  std::vector<RigidMotion> past_;  // of the last rounds
+  double reach_mm_ = 0.0;          // what a turn of 1 rad moves
   Eigen::Vector3d pivot_ = Eigen::Vector3d::Zero();
   std::vector<std::size_t> sample_;
   std::vector<Residual> surface_;  // of sample_

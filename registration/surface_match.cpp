@@ -67,7 +67,7 @@ Oriented drawn_points(const CadModel& cad, double band_mm, double step_mm) {
       for (int k = 0; i + k < n; ++k) {
         const double u = (i + 1.0 / 3.0) / n, v = (k + 1.0 / 3.0) / n;
         const Eigen::Vector3d p = a + u * ab + v * ac;
-        if (pair_edge(cad, p, band_mm).contour < 0) continue;
+        if (!near_contours(cad, p, band_mm)) continue;
         SurfacePoint foot;
         foot.triangle = static_cast<std::int32_t>(t);
         foot.barycentric = {1.0 - u - v, u, v};
@@ -85,7 +85,7 @@ double band_area_mm2(const CadModel& cad, double band_mm) {
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     for (const std::int32_t corner : cad.mesh.triangles[t])
       middle += cad.mesh.vertices_mm[std::size_t(corner)] / 3.0;
-    if (pair_edge(cad, middle, band_mm).contour >= 0) sum += area_mm2(cad.mesh, t);
+    if (near_contours(cad, middle, band_mm)) sum += area_mm2(cad.mesh, t);
   }
   return sum;
 }

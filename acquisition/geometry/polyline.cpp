@@ -94,32 +94,49 @@ CurveFoot Curve::nearest(const Eigen::Vector3d& query_mm) const {
   return best;
 }
 
-CurveFoot Curve::nearest_within(const Eigen::Vector3d& query_mm, double reach_mm) const {
+Curve::ChordFoot Curve::foot_on(std::size_t segment, const Eigen::Vector3d& query_mm) const {
+  const Eigen::Vector3d& start_mm = contour_.points_mm[segment];
+  const Eigen::Vector3d chord_mm = end_of(segment) - start_mm;
+  const double chord_mm2 = chord_mm.squaredNorm();
+  const double ratio =
+      chord_mm2 > 0.0 ? std::clamp(chord_mm.dot(query_mm - start_mm) / chord_mm2, 0.0, 1.0) : 0.0;
+  const Eigen::Vector3d foot_mm = start_mm + ratio * chord_mm;
+  return {foot_mm, ratio, (query_mm - foot_mm).squaredNorm()};
+}
+
+CurveFoot Curve::nearest_within(const Eigen::Vector3d& query_mm, double reach_mm, int hint) const {
   CurveFoot best;
   best.distance_mm = reach_mm;
   if (!query_mm.allFinite()) return best;
   double best_mm2 = reach_mm * reach_mm;
-  tree_.search(query_mm, best_mm2, [&](std::int32_t i) {
-    const Eigen::Vector3d& start_mm = contour_.points_mm[static_cast<std::size_t>(i)];
-    const Eigen::Vector3d chord_mm = end_of(static_cast<std::size_t>(i)) - start_mm;
-    const double chord_mm2 = chord_mm.squaredNorm();
-    const double ratio =
-        chord_mm2 > 0.0 ? std::clamp(chord_mm.dot(query_mm - start_mm) / chord_mm2, 0.0, 1.0) : 0.0;
-    const Eigen::Vector3d foot_mm = start_mm + ratio * chord_mm;
-    const double distance_mm2 = (query_mm - foot_mm).squaredNorm();
-    if (distance_mm2 < best_mm2 || (distance_mm2 == best_mm2 && i < best.segment)) {
-      best_mm2 = distance_mm2;
+  const auto look_at = [&](std::int32_t i) {
+    const ChordFoot at = foot_on(static_cast<std::size_t>(i), query_mm);
+    if (at.distance2_mm2 < best_mm2 || (at.distance2_mm2 == best_mm2 && i < best.segment)) {
+      best_mm2 = at.distance2_mm2;
       best.segment = i;
-      best.ratio = ratio;
-      best.foot_mm = foot_mm;
+      best.ratio = at.ratio;
+      best.foot_mm = at.foot_mm;
     }
     return best_mm2;
-  });
+  };
+  if (hint >= 0) look_at(hint);
+  tree_.search(query_mm, best_mm2, look_at);
   if (best.segment < 0) return best;
   const auto segment = static_cast<std::size_t>(best.segment);
   best.distance_mm = std::sqrt(best_mm2);
   best.arc_mm = wrap_mm(arc_mm_[segment] + best.ratio * (arc_mm_[segment + 1] - arc_mm_[segment]));
   return best;
+}
+
+bool Curve::is_within(const Eigen::Vector3d& query_mm, double reach_mm) const {
+  if (!query_mm.allFinite()) return false;
+  const double reach_mm2 = reach_mm * reach_mm;
+  bool found = false;
+  tree_.search(query_mm, reach_mm2, [&](std::int32_t i) {
+    found = found || foot_on(static_cast<std::size_t>(i), query_mm).distance2_mm2 < reach_mm2;
+    return found ? 0.0 : reach_mm2;  // then nothing is nearer
+  });
+  return found;
 }
 
 Contour resample(const Contour& contour, double step_mm) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
 #include "acquisition/geometry/box_tree.hpp"
@@ -40,14 +41,27 @@ class Curve {
   /// Ties: the lower segment. Throws Error(kBug) for a query that is not finite.
   [[nodiscard]] CurveFoot nearest(const Eigen::Vector3d& query_mm) const;
   /// The same foot if it lies nearer than reach_mm, else segment -1 and distance_mm = reach_mm; quicker, for
-  /// what lies farther is not looked at.
-  [[nodiscard]] CurveFoot nearest_within(const Eigen::Vector3d& query_mm, double reach_mm) const;
+  /// what lies farther is not looked at. `hint`: the segment of an earlier answer that is likely near; it
+  /// makes the search quicker and changes nothing.
+  [[nodiscard]] CurveFoot nearest_within(const Eigen::Vector3d& query_mm, double reach_mm,
+                                         int hint = -1) const;
+  /// Whether any of it lies nearer than reach_mm: the first that does is enough, which is quicker still.
+  [[nodiscard]] bool is_within(const Eigen::Vector3d& query_mm, double reach_mm) const;
+  /// Distance to one of its chords.
+  [[nodiscard]] double to_segment_mm(int segment, const Eigen::Vector3d& query_mm) const {
+    return std::sqrt(foot_on(static_cast<std::size_t>(segment), query_mm).distance2_mm2);
+  }
 
  private:
   struct Locus {
     std::size_t segment;
     double ratio;
   };
+  struct ChordFoot {
+    Eigen::Vector3d foot_mm;
+    double ratio, distance2_mm2;
+  };
+  [[nodiscard]] ChordFoot foot_on(std::size_t segment, const Eigen::Vector3d& query_mm) const;
   [[nodiscard]] Locus locate(double arc_mm) const;
   [[nodiscard]] const Eigen::Vector3d& end_of(std::size_t segment) const;
 

@@ -82,6 +82,13 @@ TEST(Curve, NearestWithinIsTheSameFootOrNone) {
   for (int i = 0; i < 2000; ++i) {
     const Eigen::Vector3d q_mm = random.in_cube_mm(60.0);
     const CurveFoot any = curve.nearest(q_mm), near = curve.nearest_within(q_mm, 8.0);
+    const CurveFoot hinted = curve.nearest_within(q_mm, 8.0, (i * 7) % 399);  // whatever the hint is
+    EXPECT_EQ(hinted.segment, near.segment);
+    EXPECT_EQ(hinted.arc_mm, near.arc_mm);
+    EXPECT_EQ(hinted.distance_mm, near.distance_mm);
+    EXPECT_EQ(curve.is_within(q_mm, 8.0), any.distance_mm < 8.0);
+    EXPECT_GE(curve.to_segment_mm((i * 7) % 399, q_mm), any.distance_mm);
+    EXPECT_EQ(curve.to_segment_mm(any.segment, q_mm), any.distance_mm);
     if (any.distance_mm < 8.0) {
       ++found;
       EXPECT_EQ(near.segment, any.segment);
