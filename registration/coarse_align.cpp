@@ -18,6 +18,9 @@ constexpr std::size_t kRefined = 4, kRefinedMore = 8,
                       kRefinedOfGood = 2;  // starts a hypothesis that are refined
 constexpr double kFitsCapRatio = 0.25;     // of the largest distance that scores count, beyond the spacing
 constexpr double kFewestShown = 0.40;      // of the contours: less shows no pose
+constexpr double kWellShown = 0.55;        // of the contours
+constexpr double kSeenCapRatio = 0.2;      // as kFitsCapRatio, of the places that tell anything
+constexpr double kHiddenRivalRatio = 0.7;  // of what the best pose shows: a hidden one with less is no rival
 constexpr double kMostAgainst = 0.2, kMostAgainstWhole = 0.1;  // of the contours: the face goes on there
 constexpr double kGoodCapRatio = 0.25;      // a pose from whole loops as good as this is not searched further
 constexpr double kMirrorBetterRatio = 0.6;  // of the scores beyond what the point spacing alone leaves
@@ -81,6 +84,21 @@ class CoarseSearch {
   [[nodiscard]] bool not_contradicted(const PoseCandidate& pose) const {
     return (pose.misfit.shown_ratio >= kFewestShown || !options_.edges_needed) &&
            pose.misfit.against_ratio <= kMostAgainst;
+  }
+  /// So little of its edges is in the scan that it is never taken: it hangs where nothing was scanned.
+  [[nodiscard]] bool is_hidden(const PoseCandidate& pose) const {
+    return options_.edges_needed && pose.misfit.shown_ratio < kFewestShown;
+  }
+  /// A pose well seen that leaves much only where the scan tells nothing.
+  [[nodiscard]] bool fits_where_seen(const PoseCandidate& pose) const {
+    return pose.misfit.shown_ratio >= kWellShown && pose.misfit.against_ratio <= kMostAgainstWhole &&
+           beyond_spacing(pose.misfit.seen_mm, scan_) <= kSeenCapRatio * search_.score().cap_mm();
+  }
+  /// Best first, those that are never taken last.
+  void sort(std::vector<PoseCandidate>& found) const {
+    sort_by_misfit(found);
+    std::stable_partition(found.begin(), found.end(),
+                          [&](const PoseCandidate& pose) { return !is_hidden(pose); });
   }
   /// So well that nothing else need be tried: what the scan does not show may be beyond its border.
   [[nodiscard]] bool fits_whole(const std::vector<PoseCandidate>& found) const {
@@ -179,11 +197,12 @@ const LightScan& CoarseSearch::light(bool flip) {
 /// The poses of the scan as it is and, when nothing says which side was seen, with the other side up.
 std::vector<PoseCandidate> CoarseSearch::proper(StartSource source, std::size_t refined) {
   std::vector<PoseCandidate> found = search_.candidates(light(false), source, refined);
+  sort(found);
   if (!side_open()) return found;
   std::vector<PoseCandidate> flipped = search_.candidates(light(true), source, refined);
   for (PoseCandidate& candidate : flipped) candidate.flip = true;
   found.insert(found.end(), flipped.begin(), flipped.end());
-  sort_by_misfit(found);
+  sort(found);
   return found;
 }
 
@@ -193,10 +212,10 @@ std::vector<PoseCandidate> CoarseSearch::with_turned(std::vector<PoseCandidate> 
   const LightScan& scan = light(found.front().flip);
   const std::vector<PoseCandidate> more = search_.turned(scan, found.front(), self_motions_);
   found.insert(found.end(), more.begin(), more.end());
-  sort_by_misfit(found);
+  sort(found);
   const PoseCandidate settled = search_.settled(scan, found.front());  // it may be on its way along an oval
   if (settled.misfit.patient_mm < found.front().misfit.patient_mm) found.front() = settled;
-  sort_by_misfit(found);
+  sort(found);
   return found;
 }
 
@@ -209,7 +228,7 @@ std::vector<PoseCandidate> CoarseSearch::all_candidates() {
     const double before_mm = found.empty() ? 1e300 : found.front().misfit.patient_mm;
     const std::vector<PoseCandidate> more = proper(source, kRefinedMore);
     found.insert(found.end(), more.begin(), more.end());
-    sort_by_misfit(found);
+    sort(found);
     if (!found.empty() && found.front().misfit.patient_mm < before_mm) result_.start = words;
   };
   add(StartSource::kPieces, "matching pieces of contours");
@@ -243,7 +262,7 @@ bool CoarseSearch::refuse_wrong_hand(const std::vector<PoseCandidate>& found) {
       side_open() || fits_whole(found) || left_mm < kMirrorLeastRatio * search_.score().cap_mm();
   const std::size_t refined = good ? kRefinedOfGood : kRefined;
   const std::vector<PoseCandidate> mirrored =
-      search_.candidates(LightScan(scan_, false, true), StartSource::kLoops, refined);
+      search_.candidates(LightScan(scan_, false, true), StartSource::kLoops, refined, best.misfit.patient_mm);
   if (!mirrored.empty()) result_.mirror_ratio = mirrored.front().misfit.patient_mm / best.misfit.patient_mm;
   if (good) return false;
   const auto fits_better = [&](const std::vector<PoseCandidate>& others) {
@@ -346,6 +365,9 @@ void CoarseSearch::judge_runner_up(const std::vector<PoseCandidate>& proper) {
     });
     if (told || !other.usable()) continue;
     const double worse = times_worse(other, best);
+    const bool no_rival =
+        is_hidden(other) && other.misfit.shown_ratio < kHiddenRivalRatio * best.misfit.shown_ratio;
+    if (no_rival && worse < options_.ambiguity_ratio) continue;
     const bool same_path = other.flip == best.flip &&
                            symmetry.maps_onto_itself(best.scan_from_cad.inverse() * other.scan_from_cad);
     if (worse < options_.ambiguity_ratio && same_path) {
@@ -375,7 +397,7 @@ CoarseAlignment CoarseSearch::from_nothing() {
   const PoseCandidate& best = found.front();
   take(best);
   if (refuse_wrong_hand(found)) return result_;
-  if (!fits(found, kFitsCapRatio)) {  // then every pose is about as bad as another
+  if (!fits(found, kFitsCapRatio) && !fits_where_seen(best)) {  // then every pose is about as bad as another
     refuse_no_fit(best);
     return result_;
   }

@@ -215,24 +215,27 @@ PoseMisfit PoseScore::misfit(const LightScan& scan, const RigidMotion& scan_from
                              const std::vector<Place>& places) const {
   const RigidMotion cad_from_scan = scan_from_cad.inverse();
   std::vector<double> surface = surface2(scan, cad_from_scan);
-  if (surface.size() < kFewestOnSurface) return {cap_mm_, cap_mm_, cap_mm_, 0.0, 0.0};
+  if (surface.size() < kFewestOnSurface) return {cap_mm_, cap_mm_, cap_mm_, cap_mm_, 0.0, 0.0};
   const double shown2 = std::pow(std::max(kShownRatio * cap_mm_, kShownSpacings * scan.model.spacing_mm), 2);
-  PoseMisfit misfit{0.0, 0.0, 0.0, 0.0, 0.0};
+  PoseMisfit misfit{0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   const double share = 1.0 / static_cast<double>(cad_.contours.size());
   for (std::size_t c = 0; c < cad_.contours.size(); ++c) {  // one by one: a small one counts as a large one
-    std::vector<double> along;
+    std::vector<double> along, telling;
     for (std::size_t i = c * kContourSamples; i < (c + 1) * kContourSamples; ++i) {
       along.push_back(places[i].off2_mm2);
+      if (places[i].seen != Seen::kNothing) telling.push_back(places[i].off2_mm2);
       const bool shown = places[i].seen == Seen::kEdge && places[i].off2_mm2 < shown2;
       misfit.shown_ratio += shown * share / kContourSamples;
       misfit.against_ratio += (places[i].seen == Seen::kFaceGoesOn) * share / kContourSamples;
     }
+    if (!telling.empty()) misfit.seen_mm += share * trimmed_mean(telling, kPatientKept);
     misfit.patient_mm += share * trimmed_mean(along, kPatientKept);
     misfit.middle_mm += share * trimmed_mean(along, kMiddleKept);
     misfit.strict_mm += share * trimmed_mean(along, kStrictKept);
   }
   const double rest = trimmed_mean(surface, kSurfaceKept) + other_contours2(scan, scan_from_cad) +
                       stray_holes2(scan, cad_from_scan);
+  misfit.seen_mm = std::sqrt(misfit.seen_mm + rest);
   misfit.patient_mm = std::sqrt(misfit.patient_mm + rest);
   misfit.middle_mm = std::sqrt(misfit.middle_mm + rest);
   misfit.strict_mm = std::sqrt(misfit.strict_mm + rest);

@@ -12,6 +12,7 @@ namespace arris {
 /// hidden, with a quarter, and with a tenth. Capped trimmed rms; mm.
 struct PoseMisfit {
   double patient_mm = 1e300, middle_mm = 1e300, strict_mm = 1e300;
+  double seen_mm = 1e300;      ///< patient, of the places alone at which the scan tells anything
   double shown_ratio = 0.0;    ///< of the contours' samples: an edge of the scan is near, not only the cap
   double against_ratio = 0.0;  ///< of them: the scan's face goes on where the drawing ends
 };

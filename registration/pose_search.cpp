@@ -104,14 +104,23 @@ double PoseSearch::near_mm(const LightScan& scan) const {
 }
 
 PoseCandidate PoseSearch::refine(const LightScan& scan, const RigidMotion& start, double most_mm) const {
-  return refined_further(scan, refined(scan, start, kFirstReachRatio * score_.cap_mm(), kIcpRounds), most_mm);
+  return refined_further(scan, start, refined(scan, start, kFirstReachRatio * score_.cap_mm(), kIcpRounds),
+                         most_mm);
 }
 
-PoseCandidate PoseSearch::refined_further(const LightScan& scan, PoseCandidate best, double most_mm) const {
+PoseCandidate PoseSearch::refined_further(const LightScan& scan, const RigidMotion& start, PoseCandidate best,
+                                          double most_mm) const {
   const double reach_mm = near_mm(scan);
+  if (!best.usable() || best.misfit.patient_mm <= reach_mm / 2.0) return best;
+  if (score_.least_of_start_mm(scan, start) < std::min(most_mm, best.misfit.patient_mm)) {
+    const PoseMisfit at_start = score_.of(scan, start);
+    if (at_start.patient_mm < best.misfit.patient_mm) {  // the edges of what lies about pulled it away
+      best.scan_from_cad = start;
+      best.misfit = at_start;
+    }
+  }
   if (best.misfit.patient_mm > most_mm) return best;
-  for (int again = 0; again < kMoreRefinements && best.usable() && best.misfit.patient_mm > reach_mm / 2.0;
-       ++again) {
+  for (int again = 0; again < kMoreRefinements && best.misfit.patient_mm > reach_mm / 2.0; ++again) {
     PoseCandidate next = refined(scan, best.scan_from_cad, reach_mm, kIcpRounds);
     if (next.misfit.patient_mm >= best.misfit.patient_mm) break;
     best = std::move(next);
@@ -254,7 +263,7 @@ std::vector<PoseCandidate> PoseSearch::candidates(const LightScan& scan, StartSo
   for (const PoseCandidate& pose : found) known_mm = std::min(known_mm, pose.misfit.patient_mm);
   parallel_for(found.size(), 1, threads_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      found[i] = refined_further(scan, std::move(found[i]), kStillInItRatio * known_mm);
+      found[i] = refined_further(scan, chosen[i], std::move(found[i]), kStillInItRatio * known_mm);
   });
   sort_by_misfit(found);
   return found;

@@ -66,8 +66,8 @@ class PoseSearch {
   [[nodiscard]] PoseCandidate refined(const LightScan& scan, const RigidMotion& start, double reach_mm,
                                       int rounds) const;
   /// Further ICPs where a pose leaves much, but not more than most_mm.
-  [[nodiscard]] PoseCandidate refined_further(const LightScan& scan, PoseCandidate best,
-                                              double most_mm) const;
+  [[nodiscard]] PoseCandidate refined_further(const LightScan& scan, const RigidMotion& start,
+                                              PoseCandidate best, double most_mm) const;
   [[nodiscard]] double near_mm(const LightScan& scan) const;
   [[nodiscard]] std::vector<RigidMotion> starts(const LightScan& scan, StartSource source) const;
   /// The best starts that lie apart: several of one pose would crowd out the runner-up.

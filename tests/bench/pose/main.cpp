@@ -57,7 +57,9 @@ std::vector<PoseRow> run_all(const Arguments& arguments) {
 }
 
 void run(const Arguments& arguments) {
-  const std::string text = pose_tables(run_all(arguments));
+  const std::string text = "Poses " + std::to_string(arguments.first) + " to " +
+                           std::to_string(arguments.first + arguments.poses - 1) + ", each a seed.\n\n" +
+                           pose_tables(run_all(arguments));
   std::cout << text;
   if (!arguments.out.empty() && arguments.part.empty()) put_between_markers(arguments.out, text);
 }
