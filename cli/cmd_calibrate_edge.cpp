@@ -165,7 +165,7 @@ int run_calibrate_edge(const CalibrateEdgeArgs& args) {
   check_replaceable(args);
   const Recipe recipe = reference_recipe(args.recipe);
   const Drawing drawing = read_drawing(recipe, false, args.threads);
-  const CadModel cad = prepare_cad(drawing.mesh, drawing.accepted, drawing.others);
+  const CadModel cad = prepare_cad(drawing.mesh, drawing.accepted, drawing.others, args.threads);
   const Scans scans = register_scans(args, recipe, cad);
   const EdgeCalibration found = calibration_of(args, cad, scans);
   const EdgeFile file = file_of(args, recipe, scans, found);

@@ -139,7 +139,7 @@ void print_map(const MapArgs& args, const Recipe& recipe, const std::filesystem:
 int run_map(const MapArgs& args) {
   const Recipe recipe = read_recipe(args.recipe);
   const Drawing drawing = read_drawing(recipe, false, args.threads);
-  const CadModel cad = prepare_cad(drawing.mesh, drawing.accepted, drawing.others);
+  const CadModel cad = prepare_cad(drawing.mesh, drawing.accepted, drawing.others, args.threads);
   Scan scan = read_scan(args.scan, unit_mm(recipe.scan.units));
   stop_if_interrupted();
   const Start start = start_pose(recipe, cad, scan, args.threads);

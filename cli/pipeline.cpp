@@ -178,7 +178,7 @@ Processed process(const Recipe& as_written, const Drawing& drawing, Measurement&
   describe_inputs(recipe, drawing, measurement, record);
 
   stage("aligning");
-  const CadModel cad = prepare_cad(drawing.mesh, drawing.accepted, drawing.others);
+  const CadModel cad = prepare_cad(drawing.mesh, drawing.accepted, drawing.others, threads);
   ScanModel& scan = measurement.prepared.model;
   const Registration found =
       register_scan(recipe, cad, measurement, options_of(recipe, drawing.path, measurement, threads));

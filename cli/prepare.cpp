@@ -81,10 +81,10 @@ PreparedScan prepare_scan(const Scan& scan, const PrepareOptions& options) {
 }
 
 CadModel prepare_cad(const TriangleMesh& mesh, const std::vector<Contour>& accepted,
-                     const std::vector<Contour>& others) {
-  CadModel cad{SurfaceQuery(mesh), {}};
+                     const std::vector<Contour>& others, int threads) {
+  CadModel cad{SurfaceQuery(mesh, threads), {}};
   cad.mesh = mesh;
-  cad.vertex_normals = mesh_normals(mesh).vertex;
+  cad.vertex_normals = mesh_normals(mesh, threads).vertex;
   for (const Contour& contour : accepted) cad.contours.emplace_back(contour);
   for (const Contour& contour : others) cad.others.emplace_back(contour);
   return cad;

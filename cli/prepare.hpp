@@ -30,8 +30,8 @@ struct PreparedScan {
 [[nodiscard]] PreparedScan prepare_scan(const Scan& scan, const PrepareOptions& options);
 
 /// A drawing ready for registration.
-///   others   contours of the drawing that are not followed
+///   others   contours of the drawing that are not followed; threads: 0, all of the machine
 [[nodiscard]] CadModel prepare_cad(const TriangleMesh& mesh, const std::vector<Contour>& accepted,
-                                   const std::vector<Contour>& others = {});
+                                   const std::vector<Contour>& others = {}, int threads = 0);
 
 }  // namespace arris

@@ -4,12 +4,18 @@
 #include <cmath>
 #include <limits>
 
+#include "acquisition/geometry/curve_order.hpp"
+#include "acquisition/geometry/parallel_for.hpp"
+
 namespace arris {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kBins = 16, kFewBins = 6;
 constexpr std::size_t kFewItems = 24;  // of so few the cuts are looked at more coarsely
+constexpr std::size_t kRun = 512;      // items that follow each other on a curve, a branch of the tree
+constexpr int kHalvedFrom = BoxTree::kDeepest / 2, kHalvedFromInParts = BoxTree::kDeepest / 4;
+constexpr std::size_t kChunk = 4096;
 
 /// A box of floats; the fourth lane is nothing's.
 struct Box {
@@ -32,7 +38,7 @@ struct Box {
 /// What is sorted: the box itself, so that a pass over a range reads memory in order.
 struct Item {
   Box box;
-  std::int32_t number;
+  std::int32_t number = 0;
   [[nodiscard]] Eigen::Array4f middle() const { return 0.5F * (box.low + box.high); }
 };
 
@@ -56,11 +62,43 @@ struct Bin {
   [[nodiscard]] float cost() const { return box.half_area() * static_cast<float>(count); }
 };
 
+/// Boxes about the centre, rounded outward.
+std::vector<Item> items_of(std::span<const Eigen::AlignedBox3d> boxes_mm, const Eigen::Vector3d& centre_mm,
+                           int threads) {
+  std::vector<Item> items(boxes_mm.size());
+  parallel_for(items.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Item& item = items[i];
+      item.number = static_cast<std::int32_t>(i);
+      item.box.low[3] = item.box.high[3] = 0.0F;
+      const Eigen::Vector3d low_mm = boxes_mm[i].min() - centre_mm, high_mm = boxes_mm[i].max() - centre_mm;
+      for (int axis = 0; axis < 3; ++axis) {
+        item.box.low[axis] = std::nextafter(static_cast<float>(low_mm[axis]), -kInfinity);
+        item.box.high[axis] = std::nextafter(static_cast<float>(high_mm[axis]), kInfinity);
+      }
+    }
+  });
+  return items;
+}
+
+std::vector<Item> along_curve(const std::vector<Item>& items, int threads) {
+  std::vector<Eigen::Vector3f> middles_mm;
+  middles_mm.reserve(items.size());
+  for (const Item& item : items) middles_mm.emplace_back(item.middle().head<3>());
+  std::vector<Item> ordered;
+  ordered.reserve(items.size());
+  for (const std::uint32_t i : curve_order(middles_mm, threads)) ordered.push_back(items[i]);
+  return ordered;
+}
+
 }  // namespace
 
+/// Builds nodes over items, which it puts in the order of the leaves.
 struct BoxTree::Builder {
-  BoxTree& tree;
-  std::vector<Item> items;
+  std::span<Item> items;
+  int halved_from;        // depth
+  std::int32_t at_place;  // of the first item; -1: leaves tell the item's number
+  std::vector<Node> nodes{};
 
   [[nodiscard]] Piece piece(std::size_t first, std::size_t last, int depth) const {
     Piece made{first, last, depth, {}, {}};
@@ -72,14 +110,14 @@ struct BoxTree::Builder {
   }
 
   /// Parts a piece of two or more in two: between the bins of the widest axis where the areas cost least. In
-  /// the middle of the order where that parts nothing off (all middles in one place), and from half the depth
-  /// on, which bounds the depth.
+  /// the middle of the order where that parts nothing off (all middles in one place), and from a depth on,
+  /// which bounds it.
   [[nodiscard]] std::array<Piece, 2> parted(const Piece& whole) {
     int axis = 0;
     const float width_mm = (whole.middles.high - whole.middles.low).head<3>().maxCoeff(&axis);
     const auto begin = items.begin() + static_cast<std::ptrdiff_t>(whole.first);
     const auto end = items.begin() + static_cast<std::ptrdiff_t>(whole.last);
-    if (width_mm > 0.0F && whole.depth < kDeepest / 2) {
+    if (width_mm > 0.0F && whole.depth < halved_from) {
       const int bin_count = whole.count() <= kFewItems ? kFewBins : kBins;
       const float low_mm = whole.middles.low[axis], bins_per_mm = static_cast<float>(bin_count) / width_mm;
       const auto bin_of = [&](const Item& item) {
@@ -153,11 +191,11 @@ struct BoxTree::Builder {
     return pieces;
   }
 
-  /// Returns the node's number.
+  /// Adds the node of a piece and all below it.
   std::int32_t build(const Piece& whole) {
     const std::vector<Piece> pieces = pieces_of(whole);
-    const auto id = static_cast<std::int32_t>(tree.nodes_.size());
-    tree.nodes_.emplace_back();
+    const std::size_t id = nodes.size();
+    nodes.emplace_back();
     Node node;
     for (std::size_t k = 0; k < kWidth; ++k) {
       const bool is_there = k < pieces.size();
@@ -167,34 +205,77 @@ struct BoxTree::Builder {
         node.high_mm[axis][k] = box.high[static_cast<int>(axis)];
       }
       node.child[k] = kNone;
-      if (is_there)
-        node.child[k] = pieces[k].count() == 1 ? -1 - items[pieces[k].first].number : build(pieces[k]);
+      if (!is_there) continue;
+      if (pieces[k].count() > 1)
+        node.child[k] = build(pieces[k]);
+      else if (at_place >= 0)
+        node.child[k] = -1 - at_place - static_cast<std::int32_t>(pieces[k].first);
+      else
+        node.child[k] = -1 - items[pieces[k].first].number;
     }
-    tree.nodes_[static_cast<std::size_t>(id)] = node;
-    return id;
+    nodes[id] = node;
+    return static_cast<std::int32_t>(id);
   }
+
+  void build() { build(piece(0, items.size(), 0)); }
+
+  static std::vector<Node> in_parts(std::span<Item> items, int threads);
 };
 
-BoxTree::BoxTree(std::span<const Eigen::AlignedBox3d> boxes_mm) {
+/// Runs of a space-filling curve, built by themselves on all threads, under a tree of their boxes.
+std::vector<BoxTree::Node> BoxTree::Builder::in_parts(std::span<Item> items, int threads) {
+  const std::size_t runs = (items.size() - 1) / kRun + 1;
+  std::vector<Builder> branches;
+  branches.reserve(runs);
+  for (std::size_t r = 0; r < runs; ++r)
+    branches.push_back({items.subspan(r * kRun, std::min(kRun, items.size() - r * kRun)), kHalvedFromInParts,
+                        static_cast<std::int32_t>(r * kRun)});
+  std::vector<Item> boxes(runs);
+  parallel_for(runs, 4, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) {
+      boxes[r] = {branches[r].piece(0, branches[r].items.size(), 0).box, static_cast<std::int32_t>(r)};
+      branches[r].build();
+    }
+  });
+  Builder top{boxes, kHalvedFromInParts, -1};
+  top.build();
+  std::vector<Node> all = std::move(top.nodes);
+  std::size_t count = all.size();
+  std::vector<std::int32_t> first;
+  for (const Builder& branch : branches) {
+    first.push_back(static_cast<std::int32_t>(count));
+    count += branch.nodes.size();
+  }
+  for (Node& node : all)
+    for (std::int32_t& child : node.child)
+      if (child < 0 && child != kNone) child = first[static_cast<std::size_t>(-1 - child)];
+  all.reserve(count);
+  for (std::size_t r = 0; r < runs; ++r)
+    for (Node& node : branches[r].nodes) {
+      for (std::int32_t& child : node.child)
+        if (child >= 0) child += first[r];
+      all.push_back(node);
+    }
+  return all;
+}
+
+BoxTree::BoxTree(std::span<const Eigen::AlignedBox3d> boxes_mm, int threads) {
   if (boxes_mm.empty()) return;
   Eigen::AlignedBox3d whole;
   for (const Eigen::AlignedBox3d& box : boxes_mm) whole.extend(box);
   centre_mm_ = whole.center();
   half_extent_mm_ = 0.5 * whole.sizes().maxCoeff();
-  Builder builder{*this, {}};
-  builder.items.reserve(boxes_mm.size());
-  for (const Eigen::AlignedBox3d& box : boxes_mm) {
-    Item item{{}, static_cast<std::int32_t>(builder.items.size())};
-    item.box.low[3] = item.box.high[3] = 0.0F;
-    for (int axis = 0; axis < 3; ++axis) {  // rounded outward
-      item.box.low[axis] = std::nextafter(static_cast<float>(box.min()[axis] - centre_mm_[axis]), -kInfinity);
-      item.box.high[axis] = std::nextafter(static_cast<float>(box.max()[axis] - centre_mm_[axis]), kInfinity);
-    }
-    builder.items.push_back(item);
+  std::vector<Item> items = items_of(boxes_mm, centre_mm_, threads);
+  if (items.size() <= 2 * kRun) {
+    Builder builder{items, kHalvedFrom, 0};
+    builder.build();
+    nodes_ = std::move(builder.nodes);
+  } else {
+    items = along_curve(items, threads);
+    nodes_ = Builder::in_parts(items, threads);
   }
-  nodes_.reserve(boxes_mm.size() / 2 + 1);
-  builder.build(builder.piece(0, builder.items.size(), 0));
-  nodes_.shrink_to_fit();
+  item_at_.reserve(items.size());
+  for (const Item& item : items) item_at_.push_back(item.number);
 }
 
 }  // namespace arris

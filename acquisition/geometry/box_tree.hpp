@@ -14,12 +14,13 @@ namespace arris {
 /// A tree of boxes, four to a node, for nearest-first searches: it knows where an item may lie, its owner
 /// knows the item. The boxes are floats about a centre, rounded outward, and searched with slack for the
 /// rounding of the query: an item within the limit is never hidden. Binned surface-area heuristic (Wald, IEEE
-/// RT 2007). About 37 bytes an item; built in O(n log n), the same tree for the same boxes.
+/// RT 2007). About 41 bytes an item; built in O(n log n), the same tree for the same boxes.
 class BoxTree {
  public:
   BoxTree() = default;
-  /// One box an item; none may be empty or hold what is not finite.
-  explicit BoxTree(std::span<const Eigen::AlignedBox3d> boxes_mm);
+  /// One box an item; none may be empty or hold what is not finite. The same tree for any number of threads
+  /// (0: all of the machine).
+  explicit BoxTree(std::span<const Eigen::AlignedBox3d> boxes_mm, int threads = 0);
 
   /// Calls look_at(item) for the items whose box may reach within the limit of the query, nearer boxes first;
   /// look_at answers the limit to go on with, mm squared, that or a smaller one. An item exactly at the limit
@@ -32,14 +33,16 @@ class BoxTree {
   static constexpr int kDeepest = 64;  // halvings, see split()
   static constexpr std::size_t kMostOpen = (kWidth - 1) * kDeepest + kWidth;
 
-  /// Boxes about the centre of up to four children, each a node (0 and up), an item (-1 - item) or none; the
-  /// boxes of those that are none are empty. Plain numbers, for searches of their own (packet_search.hpp);
-  /// node 0 is the root.
+  /// Boxes about the centre of up to four children, each a node (0 and up), an item (-1 - its place) or none;
+  /// the boxes of those that are none are empty. Plain numbers, for searches of their own
+  /// (packet_search.hpp); node 0 is the root.
   struct alignas(16) Node {
     float low_mm[3][kWidth], high_mm[3][kWidth];
     std::int32_t child[kWidth];
   };
   [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
+  /// The items by their places: those near each other in the tree follow each other.
+  [[nodiscard]] std::span<const std::int32_t> item_at() const { return item_at_; }
   [[nodiscard]] const Eigen::Vector3d& centre_mm() const { return centre_mm_; }
 
   /// How far rounding may have moved a float query about the centre, or a box; mm.
@@ -70,6 +73,7 @@ class BoxTree {
   Eigen::Vector3d centre_mm_ = Eigen::Vector3d::Zero();
   double half_extent_mm_ = 0.0;
   std::vector<Node> nodes_;
+  std::vector<std::int32_t> item_at_;
 };
 
 template <class LookAt>
@@ -87,7 +91,7 @@ void BoxTree::search(const Eigen::Vector3d& query_mm, double limit2_mm2, LookAt&
     const Open at = stack[--open];
     if (at.distance2_mm2 > limit) continue;
     if (at.child < 0) {
-      const double next2_mm2 = look_at(-1 - at.child);
+      const double next2_mm2 = look_at(item_at_[static_cast<std::size_t>(-1 - at.child)]);
       if (next2_mm2 < limit2_mm2) {
         limit2_mm2 = next2_mm2;
         limit = limit_above(limit2_mm2, slack);

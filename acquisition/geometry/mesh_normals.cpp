@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/geometry/parallel_for.hpp"
 #include "acquisition/types/error.hpp"
 
 namespace arris {
 namespace {
 
+constexpr std::size_t kChunk = 4096;
 constexpr double kFlatRatio = 1e-12;  // height over longest edge, below which a triangle has no direction
 
 std::size_t at(std::int32_t index) {
@@ -30,7 +32,7 @@ struct Side {
 };
 
 /// By low, high, triangle, k. The low end by counting: a vertex has few sides, and these are then sorted.
-std::vector<Side> sorted_sides(const TriangleMesh& mesh) {
+std::vector<Side> sorted_sides(const TriangleMesh& mesh, int threads) {
   std::vector<std::size_t> first(mesh.vertices_mm.size() + 1, 0);
   const auto each_side = [&](const auto& visit) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -44,17 +46,19 @@ std::vector<Side> sorted_sides(const TriangleMesh& mesh) {
   std::vector<Side> sides(3 * mesh.triangles.size());
   std::vector<std::size_t> next = first;
   each_side([&](const Side& side) { sides[next[at(side.low)]++] = side; });
-  for (std::size_t v = 0; v + 1 < first.size(); ++v)
-    std::sort(sides.begin() + static_cast<std::ptrdiff_t>(first[v]),
-              sides.begin() + static_cast<std::ptrdiff_t>(first[v + 1]), [](const Side& a, const Side& b) {
-                if (a.high != b.high) return a.high < b.high;
-                return a.triangle != b.triangle ? a.triangle < b.triangle : a.k < b.k;
-              });
+  parallel_for(mesh.vertices_mm.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      std::sort(sides.begin() + static_cast<std::ptrdiff_t>(first[v]),
+                sides.begin() + static_cast<std::ptrdiff_t>(first[v + 1]), [](const Side& a, const Side& b) {
+                  if (a.high != b.high) return a.high < b.high;
+                  return a.triangle != b.triangle ? a.triangle < b.triangle : a.k < b.k;
+                });
+  });
   return sides;
 }
 
-void number_edges(const TriangleMesh& mesh, MeshNormals& normals) {
-  const std::vector<Side> sides = sorted_sides(mesh);
+void number_edges(const TriangleMesh& mesh, int threads, MeshNormals& normals) {
+  const std::vector<Side> sides = sorted_sides(mesh, threads);
   normals.edge_of.resize(mesh.triangles.size());
   normals.vertex_is_border.assign(mesh.vertices_mm.size(), 0);
   for (std::size_t first = 0; first < sides.size();) {
@@ -72,17 +76,22 @@ void number_edges(const TriangleMesh& mesh, MeshNormals& normals) {
   }
 }
 
-void face_normals(const TriangleMesh& mesh, MeshNormals& normals) {
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Eigen::Vector3d ab_mm = mesh.vertices_mm[at(b)] - mesh.vertices_mm[at(a)];
-    const Eigen::Vector3d ac_mm = mesh.vertices_mm[at(c)] - mesh.vertices_mm[at(a)];
-    const Eigen::Vector3d cross_mm2 = ab_mm.cross(ac_mm);
-    const double longest_mm2 =
-        std::max({ab_mm.squaredNorm(), ac_mm.squaredNorm(), (ac_mm - ab_mm).squaredNorm()});
-    const bool flat = !(cross_mm2.norm() > kFlatRatio * longest_mm2);
-    normals.degenerate.push_back(flat ? 1 : 0);
-    normals.face.push_back(flat ? Eigen::Vector3d::Zero() : cross_mm2.normalized());
-  }
+void face_normals(const TriangleMesh& mesh, int threads, MeshNormals& normals) {
+  normals.degenerate.resize(mesh.triangles.size());
+  normals.face.resize(mesh.triangles.size());
+  parallel_for(mesh.triangles.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      const Eigen::Vector3d ab_mm = mesh.vertices_mm[at(b)] - mesh.vertices_mm[at(a)];
+      const Eigen::Vector3d ac_mm = mesh.vertices_mm[at(c)] - mesh.vertices_mm[at(a)];
+      const Eigen::Vector3d cross_mm2 = ab_mm.cross(ac_mm);
+      const double longest_mm2 =
+          std::max({ab_mm.squaredNorm(), ac_mm.squaredNorm(), (ac_mm - ab_mm).squaredNorm()});
+      const bool flat = !(cross_mm2.norm() > kFlatRatio * longest_mm2);
+      normals.degenerate[t] = flat ? 1 : 0;
+      normals.face[t] = flat ? Eigen::Vector3d::Zero() : cross_mm2.normalized();
+    }
+  });
 }
 
 std::vector<Eigen::Vector3d> sums_at_edges(const MeshNormals& normals) {
@@ -109,41 +118,51 @@ void fill_flat_faces(MeshNormals& normals) {
   }
 }
 
-void vertex_normals(const TriangleMesh& mesh, MeshNormals& normals) {
-  normals.vertex.assign(mesh.vertices_mm.size(), Eigen::Vector3d::Zero());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t v = at(mesh.triangles[t][k]);
-      const Eigen::Vector3d one_mm =
-          mesh.vertices_mm[at(mesh.triangles[t][(k + 1) % 3])] - mesh.vertices_mm[v];
-      const Eigen::Vector3d two_mm =
-          mesh.vertices_mm[at(mesh.triangles[t][(k + 2) % 3])] - mesh.vertices_mm[v];
-      // To single precision, so that the last bit of atan2, which depends on the CPU's instructions, does not
-      // matter.
-      const auto angle_rad = static_cast<float>(std::atan2(one_mm.cross(two_mm).norm(), one_mm.dot(two_mm)));
-      normals.vertex[v] += static_cast<double>(angle_rad) * normals.face[t];
-    }
+/// At each corner of a triangle. To single precision, so that the last bit of atan2, which depends on the
+/// CPU's instructions, does not matter.
+std::array<float, 3> angles_rad(const TriangleMesh& mesh, std::size_t t) {
+  std::array<float, 3> angles{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector3d& v_mm = mesh.vertices_mm[at(mesh.triangles[t][k])];
+    const Eigen::Vector3d one_mm = mesh.vertices_mm[at(mesh.triangles[t][(k + 1) % 3])] - v_mm;
+    const Eigen::Vector3d two_mm = mesh.vertices_mm[at(mesh.triangles[t][(k + 2) % 3])] - v_mm;
+    angles[k] = static_cast<float>(std::atan2(one_mm.cross(two_mm).norm(), one_mm.dot(two_mm)));
+  }
+  return angles;
 }
 
-void normalise(std::vector<Eigen::Vector3d>& vectors) {
-  for (Eigen::Vector3d& v : vectors) {
-    const double length = v.norm();
-    if (length > 1e-12) v /= length;
-  }
+void vertex_normals(const TriangleMesh& mesh, int threads, MeshNormals& normals) {
+  std::vector<std::array<float, 3>> angles(mesh.triangles.size());
+  parallel_for(angles.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) angles[t] = angles_rad(mesh, t);
+  });
+  normals.vertex.assign(mesh.vertices_mm.size(), Eigen::Vector3d::Zero());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      normals.vertex[at(mesh.triangles[t][k])] += static_cast<double>(angles[t][k]) * normals.face[t];
+}
+
+void normalise(std::vector<Eigen::Vector3d>& vectors, int threads) {
+  parallel_for(vectors.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double length = vectors[i].norm();
+      if (length > 1e-12) vectors[i] /= length;
+    }
+  });
 }
 
 }  // namespace
 
-MeshNormals mesh_normals(const TriangleMesh& mesh) {
+MeshNormals mesh_normals(const TriangleMesh& mesh, int threads) {
   check_indices(mesh);
   MeshNormals normals;
-  number_edges(mesh, normals);
-  face_normals(mesh, normals);
+  number_edges(mesh, threads, normals);
+  face_normals(mesh, threads, normals);
   fill_flat_faces(normals);
   normals.edge = sums_at_edges(normals);
-  vertex_normals(mesh, normals);
-  normalise(normals.edge);
-  normalise(normals.vertex);
+  vertex_normals(mesh, threads, normals);
+  normalise(normals.edge, threads);
+  normalise(normals.vertex, threads);
   return normals;
 }
 

@@ -22,7 +22,8 @@ struct MeshNormals {
   std::vector<std::uint8_t> degenerate;  ///< by triangle: no area (height below 1e-12 of its longest edge)
 };
 
-/// Cost O(n log n). Throws Error(kBug) when a triangle names a vertex that is not there.
-[[nodiscard]] MeshNormals mesh_normals(const TriangleMesh& mesh);
+/// The same bits for any number of threads (0: all of the machine). Cost O(n log n). Throws Error(kBug) when
+/// a triangle names a vertex that is not there.
+[[nodiscard]] MeshNormals mesh_normals(const TriangleMesh& mesh, int threads = 0);
 
 }  // namespace arris

@@ -4,19 +4,23 @@
 
 #include "acquisition/geometry/box_tree.hpp"
 
-/// Eight queries walk down a BoxTree of triangles together. All of it is float and only prunes: what may be
-/// the nearest triangle of a query is listed, and who asked decides in double. So neither the width of the
-/// CPU's registers nor the order of the walk can change an answer.
+/// Sixteen queries that lie near each other are searched for together in a BoxTree of triangles. All of it is
+/// float and only prunes: what may be the nearest triangle of a query is listed, and who asked decides in
+/// double. So neither the width of the CPU's registers nor the order of the queries can change an answer.
 namespace arris::packet {
 
-constexpr int kLanes = 8;
-constexpr int kMostCandidates = 24;
+constexpr int kLanes = 16;
+constexpr int kMostTriangles = 192;  // that a packet looks at
 
-/// A triangle about the tree's centre, for the float test.
-struct alignas(64) Triangle {
-  float a_mm[3], ab_mm[3], ac_mm[3];
-  float over_ab2, over_ac2, over_bc2, over_area2;  ///< 1 / squared length, squared length of the normal
-  float slack2_mm2;  ///< what rounding may add to a squared distance; infinite: only its box tells
+/// A triangle about the tree's centre, for the float test: its longest side is the x axis of a frame of its
+/// own, in whose plane it lies.
+struct alignas(32) Triangle {
+  float origin_mm[3], along[3], across[3], normal[3];
+  float length_mm;                                           ///< of the longest side, from the origin
+  float second_along[2], second_start[2], second_length_mm;  ///< the side from its end: direction; where it
+                                                             ///< starts, along and across that direction
+  float third_along[2], third_length_mm;                     ///< the side that ends in the origin
+  float slack2_mm2;  ///< what rounding may add to a squared distance; infinite: it must be asked in double
 };
 
 /// The triangle for the test; how well its shape can be told in float goes into its slack.
@@ -25,18 +29,21 @@ struct alignas(64) Triangle {
 
 struct Queries {
   alignas(32) float p_mm[3][kLanes];     ///< about the tree's centre
-  alignas(32) float limit2_mm2[kLanes];  ///< none farther is listed; shrinks during the search
+  alignas(32) float limit2_mm2[kLanes];  ///< none farther counts; shrinks during the search
 };
 
-/// What may be nearest to each query: all items whose distance lies within the limit left at the end.
+/// What may be nearest to each query: every triangle whose distance lies within the limit left at the end.
 struct Candidates {
-  std::int32_t item[kLanes][kMostCandidates];
-  float least2_mm2[kLanes][kMostCandidates];  ///< below its true squared distance
-  int count[kLanes];                          ///< -1: too many, the query must be asked alone
+  int count = 0;
+  std::int32_t place[kMostTriangles];                    ///< in the tree
+  std::uint32_t lanes[kMostTriangles];                   ///< bit k: may be nearest to query k
+  alignas(32) float least2_mm2[kMostTriangles][kLanes];  ///< below its true squared distance
 };
 
-/// `near_item`: looked at first (-1: none); it makes the search quicker. On AVX2 where the CPU has it.
-void search(const BoxTree& tree, const Triangle* triangles, std::int32_t near_item, Queries& queries,
-            Candidates& candidates);
+/// False when there are too many: the queries must be asked alone. `guess2_mm2`: how far the nearest
+/// triangles may be, squared; a good guess makes the search quick, a bad one changes nothing. Told is what
+/// would have been one.
+[[nodiscard]] bool search(const BoxTree& tree, const Triangle* triangles, std::int32_t near_place,
+                          float& guess2_mm2, Queries& queries, Candidates& candidates);
 
 }  // namespace arris::packet

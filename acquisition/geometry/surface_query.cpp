@@ -6,7 +6,9 @@
 
 #include "acquisition/geometry/box_tree.hpp"
 #include "acquisition/geometry/mesh_normals.hpp"
+#include "acquisition/geometry/packet_feet.hpp"
 #include "acquisition/geometry/packet_search.hpp"
+#include "acquisition/geometry/parallel_for.hpp"
 #include "acquisition/types/error.hpp"
 
 namespace arris {
@@ -17,6 +19,13 @@ namespace {
 constexpr double kOnEdgeRatio = 1e-9;
 constexpr double kRoundedTwice = 2.0;   // the query and the triangle
 constexpr double kFarForPackets = 1e9;  // mm; squares of floats
+constexpr double kLargestGuess2Mm2 = 1e18;
+constexpr int kLongestWait = 31;
+constexpr std::size_t kChunk = 4096;
+
+std::size_t at(std::int32_t index) {
+  return static_cast<std::size_t>(index);
+}
 
 struct Foot {
   Eigen::Vector3d foot_mm;
@@ -67,23 +76,17 @@ Foot nearest_on_triangle(const std::array<Eigen::Vector3d, 3>& corners_mm, const
 
 /// The nearest triangle of those looked at so far.
 struct Nearest {
-  const TriangleMesh& mesh;
-  const Eigen::Vector3d& query_mm;
-  double limit2_mm2;
-  std::int32_t triangle = -1, item = -1;  // of the mesh, in the tree
+  double limit2_mm2 = 0.0;
+  std::int32_t triangle = -1;
   Foot foot{};
 
-  void look_at(std::int32_t t, std::int32_t its_item) {
-    const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(t)];
-    const Foot candidate = nearest_on_triangle(
-        {mesh.vertices_mm[static_cast<std::size_t>(a)], mesh.vertices_mm[static_cast<std::size_t>(b)],
-         mesh.vertices_mm[static_cast<std::size_t>(c)]},
-        query_mm);
+  void look_at(const std::array<Eigen::Vector3d, 3>& corners_mm, std::int32_t t,
+               const Eigen::Vector3d& query_mm) {
+    const Foot candidate = nearest_on_triangle(corners_mm, query_mm);
     if (!(candidate.distance2_mm2 <= limit2_mm2)) return;
     if (candidate.distance2_mm2 == limit2_mm2 && triangle >= 0 && t > triangle) return;
     limit2_mm2 = candidate.distance2_mm2;
     triangle = t;
-    item = its_item;
     foot = candidate;
   }
 };
@@ -96,25 +99,44 @@ float far_inside_of(const std::array<Eigen::Vector3d, 3>& p_mm) {
   return ratio < 1.0 ? static_cast<float>(ratio) : 2.0F;
 }
 
+/// Where the search of the next packet begins: near the last one.
+struct Seed {
+  std::int32_t place = -1;  // in the tree
+  float guess2_mm2 = 0.0F;
+  int wait = 0, next_wait = 0;  // packets to ask alone, after one whose queries lie far apart
+};
+
 }  // namespace
 
 struct SurfaceQuery::Impl {
-  explicit Impl(const TriangleMesh& mesh_) : mesh(mesh_), normals(mesh_normals(mesh_)) {
-    std::vector<Eigen::AlignedBox3d> boxes_mm;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      if (normals.degenerate[t] != 0) continue;
-      triangle_of.push_back(static_cast<std::int32_t>(t));
-      boxes_mm.emplace_back();
-      for (const Eigen::Vector3d& corner_mm : corners(t)) boxes_mm.back().extend(corner_mm);
-    }
-    tree = BoxTree(boxes_mm);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) far_inside.push_back(far_inside_of(corners(t)));
-    for (const std::int32_t t : triangle_of) {
-      const std::array<Eigen::Vector3d, 3> p_mm = corners(static_cast<std::size_t>(t));
-      const Eigen::Vector3d& centre_mm = tree.centre_mm();
-      packed.push_back(packet::triangle_of(p_mm[0] - centre_mm, p_mm[1] - centre_mm, p_mm[2] - centre_mm,
-                                           kRoundedTwice * tree.slack_mm(Eigen::Vector3d::Zero())));
-    }
+  Impl(const TriangleMesh& mesh_, int threads) : mesh(mesh_), normals(mesh_normals(mesh_, threads)) {
+    std::vector<std::int32_t> with_area;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      if (normals.degenerate[t] == 0) with_area.push_back(static_cast<std::int32_t>(t));
+    std::vector<Eigen::AlignedBox3d> boxes_mm(with_area.size());
+    parallel_for(boxes_mm.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        for (const Eigen::Vector3d& corner_mm : corners(at(with_area[i]))) boxes_mm[i].extend(corner_mm);
+    });
+    tree = BoxTree(boxes_mm, threads);
+    far_inside.resize(mesh.triangles.size());
+    place_of.assign(mesh.triangles.size(), -1);
+    packed.resize(with_area.size());
+    triangle_at.resize(with_area.size());
+    triangle_of = std::move(with_area);
+    const double slack_mm = kRoundedTwice * tree.slack_mm(Eigen::Vector3d::Zero());
+    parallel_for(packed.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t place = begin; place < end; ++place) {
+        const std::int32_t t = triangle_of[at(tree.item_at()[place])];
+        const std::array<Eigen::Vector3d, 3> p_mm = corners(at(t));
+        const Eigen::Vector3d& centre_mm = tree.centre_mm();
+        triangle_at[place] = t;
+        place_of[at(t)] = static_cast<std::int32_t>(place);
+        far_inside[at(t)] = far_inside_of(p_mm);
+        packed[place] =
+            packet::triangle_of(p_mm[0] - centre_mm, p_mm[1] - centre_mm, p_mm[2] - centre_mm, slack_mm);
+      }
+    });
   }
 
   [[nodiscard]] std::array<Eigen::Vector3d, 3> corners(std::size_t t) const {
@@ -125,24 +147,38 @@ struct SurfaceQuery::Impl {
 
   [[nodiscard]] SurfacePoint describe(std::size_t triangle, const Foot& foot,
                                       const Eigen::Vector3d& query_mm) const;
+  [[nodiscard]] SurfacePoint describe(const packet::Feet& feet, std::size_t lane,
+                                      const Eigen::Vector3d& query_mm) const;
+  [[nodiscard]] double signed_mm(const packet::Feet& feet, std::size_t lane,
+                                 const Eigen::Vector3d& query_mm) const;
+
+  void look_at_triangle(std::int32_t t, const Eigen::Vector3d& query_mm, Nearest& nearest) const {
+    nearest.look_at(corners(at(t)), t, query_mm);
+  }
 
   /// Looks at what the tree shows within the limit of `nearest`.
   void search_alone(const Eigen::Vector3d& query_mm, Nearest& nearest) const {
     tree.search(query_mm, nearest.limit2_mm2, [&](std::int32_t item) {
-      nearest.look_at(triangle_of[static_cast<std::size_t>(item)], item);
+      look_at_triangle(triangle_of[at(item)], query_mm, nearest);
       return nearest.limit2_mm2;
     });
   }
 
-  std::int32_t answer_packet(std::span<const Eigen::Vector3d> queries_mm, double max_distance_mm,
-                             std::int32_t near_item, std::span<SurfacePoint> answers) const;
+  bool pack(std::span<const Eigen::Vector3d> queries_mm, double max_distance_mm, packet::Queries& queries,
+            packet::Feet& feet) const;
+  void look_alone(std::span<const Eigen::Vector3d> queries_mm, Seed& seed, packet::Feet& feet) const;
+  void look(std::span<const Eigen::Vector3d> queries_mm, double max_distance_mm, Seed& seed,
+            packet::Feet& feet) const;
+  template <class Answer>
+  void answer_all(std::span<const Eigen::Vector3d> queries_mm, double max_distance_mm, Answer&& answer) const;
 
   TriangleMesh mesh;
   MeshNormals normals;
-  std::vector<std::int32_t> triangle_of;  // mesh triangle of each triangle in the tree
+  std::vector<std::int32_t> triangle_of;            // mesh triangle of each item of the tree
+  std::vector<std::int32_t> triangle_at, place_of;  // mesh triangle at each place in the tree, and back
   std::vector<float> far_inside;  // of all: a foot whose barycentric coordinates exceed it is on no edge
   BoxTree tree;
-  std::vector<packet::Triangle> packed;  // of the triangles in the tree
+  std::vector<packet::Triangle> packed;  // by their places in the tree
 };
 
 SurfacePoint SurfaceQuery::Impl::describe(std::size_t triangle, const Foot& foot,
@@ -184,56 +220,114 @@ SurfacePoint SurfaceQuery::Impl::describe(std::size_t triangle, const Foot& foot
   return sign();
 }
 
-/// Answers up to kLanes queries; returns the item to look at first for those that follow.
-std::int32_t SurfaceQuery::Impl::answer_packet(std::span<const Eigen::Vector3d> queries_mm,
-                                               double max_distance_mm, std::int32_t near_item,
-                                               std::span<SurfacePoint> answers) const {
-  packet::Queries packed_queries;
-  packet::Candidates candidates;
-  const auto can_join = [&](const Eigen::Vector3d& q) {
-    return (q - tree.centre_mm()).cwiseAbs().maxCoeff() < kFarForPackets;  // false for what is not finite
-  };
-  const auto leads = std::find_if(queries_mm.begin(), queries_mm.end(), can_join);
-  if (leads != queries_mm.end() && max_distance_mm >= 0.0) {
-    for (std::size_t lane = 0; lane < packet::kLanes; ++lane) {
-      const bool joins = lane < queries_mm.size() && can_join(queries_mm[lane]);
-      const Eigen::Vector3d local_mm = (joins ? queries_mm[lane] : *leads) - tree.centre_mm();
-      for (int axis = 0; axis < 3; ++axis)
-        packed_queries.p_mm[axis][lane] = static_cast<float>(local_mm[axis]);
-      packed_queries.limit2_mm2[lane] =
-          BoxTree::limit_above(max_distance_mm * max_distance_mm, 2.0 * tree.slack_mm(local_mm));
-    }
-    packet::search(tree, packed.data(), near_item, packed_queries, candidates);
-  }
-  for (std::size_t lane = 0; lane < queries_mm.size(); ++lane) {
-    const Eigen::Vector3d& query_mm = queries_mm[lane];
-    answers[lane] = {};
-    if (!query_mm.allFinite() || !(max_distance_mm >= 0.0)) continue;
-    Nearest nearest{mesh, query_mm, max_distance_mm * max_distance_mm};
-    if (!can_join(query_mm) || candidates.count[lane] < 0) {
-      search_alone(query_mm, nearest);
-    } else {
-      for (int k = 0; k < candidates.count[lane]; ++k) {
-        if (candidates.least2_mm2[lane][k] > packed_queries.limit2_mm2[lane]) continue;
-        const std::int32_t item = candidates.item[lane][k];
-        nearest.look_at(triangle_of[static_cast<std::size_t>(item)], item);
-      }
-    }
-    if (nearest.triangle < 0) continue;
-    answers[lane] = describe(static_cast<std::size_t>(nearest.triangle), nearest.foot, query_mm);
-    if (nearest.item >= 0) near_item = nearest.item;
-  }
-  return near_item;
+SurfacePoint SurfaceQuery::Impl::describe(const packet::Feet& feet, std::size_t lane,
+                                          const Eigen::Vector3d& query_mm) const {
+  if (feet.triangle[lane] < 0.0) return {};
+  const double b = feet.b[lane], c = feet.c[lane];
+  const Foot foot{{feet.foot_mm[0][lane], feet.foot_mm[1][lane], feet.foot_mm[2][lane]},
+                  {1.0 - b - c, b, c},
+                  feet.limit2_mm2[lane]};
+  return describe(static_cast<std::size_t>(feet.triangle[lane]), foot, query_mm);
 }
 
-SurfaceQuery::SurfaceQuery(const TriangleMesh& mesh) : impl_(std::make_shared<const Impl>(mesh)) {}
+double SurfaceQuery::Impl::signed_mm(const packet::Feet& feet, std::size_t lane,
+                                     const Eigen::Vector3d& query_mm) const {
+  if (feet.triangle[lane] < 0.0) return std::numeric_limits<double>::quiet_NaN();
+  if (feet.inside[lane] > 0.0) {
+    const double distance_mm = std::sqrt(feet.limit2_mm2[lane]);
+    return feet.height_mm[lane] >= 0.0 ? distance_mm : -distance_mm;
+  }
+  const SurfacePoint answer = describe(feet, lane, query_mm);
+  return answer.on_border ? std::numeric_limits<double>::quiet_NaN() : answer.signed_mm;
+}
+
+/// Makes the queries ready for the float search; false where one is too far off for it, or not finite.
+bool SurfaceQuery::Impl::pack(std::span<const Eigen::Vector3d> queries_mm, double max_distance_mm,
+                              packet::Queries& queries, packet::Feet& feet) const {
+  double farthest_mm = 0.0;
+  bool can_join = true;
+  for (std::size_t lane = 0; lane < packet::kLanes; ++lane) {
+    const Eigen::Vector3d& query_mm = queries_mm[std::min(lane, queries_mm.size() - 1)];
+    const Eigen::Vector3d local_mm = query_mm - tree.centre_mm();
+    const double far_mm = local_mm.cwiseAbs().maxCoeff();
+    can_join = can_join && far_mm < kFarForPackets && local_mm.allFinite();
+    farthest_mm = std::max(farthest_mm, far_mm);
+    for (int axis = 0; axis < 3; ++axis) {
+      queries.p_mm[axis][lane] = static_cast<float>(local_mm[axis]);
+      feet.q_mm[axis][lane] = query_mm[axis];
+    }
+  }
+  const double slack_mm = 2.0 * tree.slack_mm(Eigen::Vector3d::Constant(farthest_mm));
+  std::fill_n(queries.limit2_mm2, packet::kLanes,
+              BoxTree::limit_above(max_distance_mm * max_distance_mm, slack_mm));
+  return can_join;
+}
+
+/// Queries that follow each other, each by itself.
+void SurfaceQuery::Impl::look_alone(std::span<const Eigen::Vector3d> queries_mm, Seed& seed,
+                                    packet::Feet& feet) const {
+  for (std::size_t lane = 0; lane < queries_mm.size(); ++lane) {
+    if (!queries_mm[lane].allFinite()) continue;
+    Nearest nearest{feet.limit2_mm2[lane]};
+    if (seed.place >= 0) look_at_triangle(triangle_at[at(seed.place)], queries_mm[lane], nearest);
+    search_alone(queries_mm[lane], nearest);
+    if (nearest.triangle < 0) continue;
+    seed.place = place_of[at(nearest.triangle)];
+    seed.guess2_mm2 = static_cast<float>(std::min(nearest.limit2_mm2, kLargestGuess2Mm2));
+    packet::put(nearest.triangle, nearest.foot.foot_mm, nearest.foot.barycentric, nearest.limit2_mm2,
+                static_cast<int>(lane), feet);
+  }
+}
+
+/// Finds the feet of up to kLanes queries: together where they lie near each other.
+void SurfaceQuery::Impl::look(std::span<const Eigen::Vector3d> queries_mm, double max_distance_mm, Seed& seed,
+                              packet::Feet& feet) const {
+  packet::begin(feet, max_distance_mm * max_distance_mm);
+  packet::Queries queries;
+  packet::Candidates candidates;
+  if (!pack(queries_mm, max_distance_mm, queries, feet) || seed.place < 0 || seed.wait > 0) {
+    seed.wait -= seed.wait > 0 ? 1 : 0;
+    return look_alone(queries_mm, seed, feet);
+  }
+  if (!packet::search(tree, packed.data(), seed.place, seed.guess2_mm2, queries, candidates)) {
+    seed.wait = seed.next_wait = std::min(2 * seed.next_wait + 1, kLongestWait);
+    return look_alone(queries_mm, seed, feet);
+  }
+  seed.next_wait = 0;
+  for (int k = 0; k < candidates.count; ++k) {
+    const auto t = at(triangle_at[at(candidates.place[k])]);
+    packet::look_at({corners(t), normals.face[t], static_cast<double>(far_inside[t]),
+                     static_cast<std::int32_t>(t), candidates.lanes[k]},
+                    feet);
+  }
+  if (candidates.count > 0) seed.place = candidates.place[0];
+}
+
+/// Calls answer(number of the query, feet, its lane) for each query in turn.
+template <class Answer>
+void SurfaceQuery::Impl::answer_all(std::span<const Eigen::Vector3d> queries_mm, double max_distance_mm,
+                                    Answer&& answer) const {
+  Seed seed;
+  packet::Feet feet;
+  for (std::size_t first = 0; first < queries_mm.size(); first += packet::kLanes) {
+    const std::size_t count = std::min<std::size_t>(packet::kLanes, queries_mm.size() - first);
+    if (max_distance_mm >= 0.0)
+      look(queries_mm.subspan(first, count), max_distance_mm, seed, feet);
+    else
+      packet::begin(feet, 0.0);
+    for (std::size_t lane = 0; lane < count; ++lane) answer(first + lane, feet, lane);
+  }
+}
+
+SurfaceQuery::SurfaceQuery(const TriangleMesh& mesh, int threads)
+    : impl_(std::make_shared<const Impl>(mesh, threads)) {}
 
 SurfacePoint SurfaceQuery::closest(const Eigen::Vector3d& query_mm, double max_distance_mm,
                                    std::int32_t hint) const {
   const Impl& impl = *impl_;
   if (!query_mm.allFinite() || !(max_distance_mm >= 0.0)) return {};
-  Nearest nearest{impl.mesh, query_mm, max_distance_mm * max_distance_mm};
-  if (hint >= 0) nearest.look_at(hint, -1);
+  Nearest nearest{max_distance_mm * max_distance_mm};
+  if (hint >= 0) impl.look_at_triangle(hint, query_mm, nearest);
   impl.search_alone(query_mm, nearest);
   if (nearest.triangle < 0) return {};
   return impl.describe(static_cast<std::size_t>(nearest.triangle), nearest.foot, query_mm);
@@ -244,13 +338,21 @@ void SurfaceQuery::closest(std::span<const Eigen::Vector3d> queries_mm, double m
   if (answers.size() != queries_mm.size())
     throw Error(Fault::kBug, "closest: " + std::to_string(answers.size()) + " answers for " +
                                  std::to_string(queries_mm.size()) + " points");
-  const Impl& impl = *impl_;
-  std::int32_t near_item = -1;
-  for (std::size_t first = 0; first < queries_mm.size(); first += packet::kLanes) {
-    const std::size_t count = std::min<std::size_t>(packet::kLanes, queries_mm.size() - first);
-    near_item = impl.answer_packet(queries_mm.subspan(first, count), max_distance_mm, near_item,
-                                   answers.subspan(first, count));
-  }
+  impl_->answer_all(queries_mm, max_distance_mm,
+                    [&](std::size_t i, const packet::Feet& feet, std::size_t lane) {
+                      answers[i] = impl_->describe(feet, lane, queries_mm[i]);
+                    });
+}
+
+void SurfaceQuery::signed_distances(std::span<const Eigen::Vector3d> queries_mm, double max_distance_mm,
+                                    std::span<double> answers_mm) const {
+  if (answers_mm.size() != queries_mm.size())
+    throw Error(Fault::kBug, "signed_distances: " + std::to_string(answers_mm.size()) + " answers for " +
+                                 std::to_string(queries_mm.size()) + " points");
+  impl_->answer_all(queries_mm, max_distance_mm,
+                    [&](std::size_t i, const packet::Feet& feet, std::size_t lane) {
+                      answers_mm[i] = impl_->signed_mm(feet, lane, queries_mm[i]);
+                    });
 }
 
 }  // namespace arris

@@ -27,8 +27,9 @@ struct SurfacePoint {
 /// angle-weighted pseudo-normals, so edges never flip it.
 class SurfaceQuery {
  public:
-  /// Copies the mesh. Build O(n log n). Throws Error(kBug) for indices out of range.
-  explicit SurfaceQuery(const TriangleMesh& mesh);
+  /// Copies the mesh. Build O(n log n), on `threads` threads (0: all of the machine). Throws Error(kBug) for
+  /// indices out of range.
+  explicit SurfaceQuery(const TriangleMesh& mesh, int threads = 0);
 
   /// Nearest point within max_distance_mm (triangle -1 if there is none). `hint`: an earlier answer that is
   /// likely near, of a point that has moved a little; it makes the search quicker and changes nothing.
@@ -39,6 +40,11 @@ class SurfaceQuery {
   /// each other lie near each other (curve_order), not slower than one by one otherwise.
   void closest(std::span<const Eigen::Vector3d> queries_mm, double max_distance_mm,
                std::span<SurfacePoint> answers) const;
+
+  /// signed_mm of closest() for many points; NaN where nothing lies within the radius or the foot is on the
+  /// border.
+  void signed_distances(std::span<const Eigen::Vector3d> queries_mm, double max_distance_mm,
+                        std::span<double> answers_mm) const;
 
  private:
   struct Impl;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "tests/geometry/random_points.hpp"
 
@@ -53,7 +54,7 @@ void expect_none_hidden(const Boxes& boxes, double reach_mm, unsigned seed) {
 }
 
 TEST(BoxTree, HidesNoItemWithinTheLimit) {
-  for (const int count : {0, 1, 2, 3, 4, 5, 17, 400})
+  for (const int count : {0, 1, 2, 3, 4, 5, 17, 400, 1025, 3000})
     expect_none_hidden(random_boxes(count, 100.0, 8.0, 1 + static_cast<unsigned>(count)), 300.0, 2);
 }
 
@@ -71,6 +72,10 @@ TEST(BoxTree, TakesBoxesThatNoSplitPartsAndOnesOfEverySize) {
     halving.emplace_back(Eigen::Vector3d::Constant(std::ldexp(1.0, -i)),
                          Eigen::Vector3d::Constant(std::ldexp(1.5, -i)));
   expect_none_hidden(halving, 2.0, 7);
+  const Boxes once = halving;
+  for (int copy = 0; copy < 3; ++copy) halving.insert(halving.end(), once.begin(), once.end());
+  expect_none_hidden(halving, 2.0, 8);
+  expect_none_hidden(Boxes(3000, Eigen::AlignedBox3d(Eigen::Vector3d::Zero())), 1.0, 9);
 }
 
 TEST(BoxTree, LooksAtTheItemsThatLieExactlyAtTheLimit) {
@@ -78,6 +83,17 @@ TEST(BoxTree, LooksAtTheItemsThatLieExactlyAtTheLimit) {
                        Eigen::AlignedBox3d(Eigen::Vector3d(0.0, -3.0, 0.0)),
                        Eigen::AlignedBox3d(Eigen::Vector3d(0.0, 0.0, 3.1))};
   EXPECT_EQ(looked_at(BoxTree(boxes), Eigen::Vector3d::Zero(), 3.0), (std::vector<std::int32_t>{0, 1}));
+}
+
+TEST(BoxTree, IsTheSameForAnyThreadCount) {
+  const Boxes boxes = random_boxes(20000, 100.0, 1.0, 10);
+  const BoxTree one(boxes, 1);
+  for (const int threads : {2, 8}) {
+    const BoxTree many(boxes, threads);
+    ASSERT_EQ(many.nodes().size(), one.nodes().size());
+    EXPECT_EQ(std::memcmp(many.nodes().data(), one.nodes().data(), one.nodes().size_bytes()), 0);
+    EXPECT_TRUE(std::equal(many.item_at().begin(), many.item_at().end(), one.item_at().begin()));
+  }
 }
 
 TEST(BoxTree, LooksAtFewWhenTheLimitShrinks) {

@@ -19,7 +19,7 @@ std::vector<Eigen::Vector3f> points_in_cube(int count, unsigned seed) {
 }
 
 TEST(CurveOrder, NamesEachPointOnce) {
-  for (const int count : {0, 1, 2, 1000, 40000}) {
+  for (const int count : {0, 1, 2, 1000, 40000, 200000}) {
     std::vector<Eigen::Vector3f> points = points_in_cube(count, 1);
     if (count > 2) points[1].setConstant(std::numeric_limits<float>::quiet_NaN());
     std::vector<std::uint32_t> order = curve_order(points, 2);
@@ -48,6 +48,19 @@ TEST(CurveOrder, PointsInOnePlaceKeepTheirOrder) {
   const std::vector<Eigen::Vector3f> points(50, Eigen::Vector3f(3, 4, 5));
   const std::vector<std::uint32_t> order = curve_order(points, 1);
   EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
+}
+
+TEST(CurveOrder, ManyPointsAreOrderedAsFewOfThem) {
+  // The place on the curve depends on the box alone: a part of the points with the same box keeps its order.
+  std::vector<Eigen::Vector3f> few = points_in_cube(20000, 3);
+  few.emplace_back(-100.0F, -100.0F, -100.0F);
+  few.emplace_back(100.0F, 100.0F, 100.0F);
+  std::vector<Eigen::Vector3f> many = few;
+  for (const Eigen::Vector3f& p : points_in_cube(150000, 4)) many.push_back(p);
+  std::vector<std::uint32_t> those_of_few;
+  for (const std::uint32_t i : curve_order(many, 2))
+    if (i < few.size()) those_of_few.push_back(i);
+  EXPECT_EQ(those_of_few, curve_order(few, 1));
 }
 
 TEST(CurveOrder, SameForAnyThreadCount) {

@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -149,6 +150,32 @@ TEST(SurfaceQuery, IsEmbreesDistanceOnManyTriangles) {
     for (int i = 0; i < 5000; ++i) {
       const Eigen::Vector3d query_mm = random.in_cube_mm(i % 2 == 0 ? 150.0 : 45.0);
       EXPECT_NEAR(surface.closest(query_mm).distance_mm, twin.distance_mm(query_mm), 1e-9);
+    }
+  }
+}
+
+TEST(SurfaceQuery, DistancesOfManyPointsAreEmbrees) {
+  // Points that follow each other lie near each other, near the surface and ever farther from it.
+  for (const TriangleMesh& mesh : {triangle_soup(20000, 17), sphere_mesh(40.0, 6), sheet_mesh(100.0, 100)}) {
+    const SurfaceQuery surface(mesh);
+    const EmbreeTwin twin(mesh);
+    Random random(18);
+    std::vector<Eigen::Vector3d> queries_mm;
+    for (std::size_t i = 0; i < 6000; ++i) {
+      const auto& t = mesh.triangles[i * mesh.triangles.size() / 6000];
+      queries_mm.push_back(mesh.vertices_mm[static_cast<std::size_t>(t[i % 3])] +
+                           random.in_cube_mm(std::pow(10.0, static_cast<double>(i % 5000) / 1000.0 - 3.0)));
+    }
+    std::vector<SurfacePoint> answers(queries_mm.size());
+    std::vector<double> signed_mm(queries_mm.size());
+    surface.closest(queries_mm, 1e30, answers);
+    surface.signed_distances(queries_mm, 1e30, signed_mm);
+    for (std::size_t i = 0; i < queries_mm.size(); ++i) {
+      const double distance_mm = twin.distance_mm(queries_mm[i]);
+      EXPECT_NEAR(answers[i].distance_mm, distance_mm, 1e-9) << i;
+      if (!answers[i].on_border) {
+        EXPECT_NEAR(std::abs(signed_mm[i]), distance_mm, 1e-9) << i;
+      }
     }
   }
 }
@@ -352,14 +379,24 @@ TEST(SurfaceQuery, ManyPointsGetTheAnswersOfEachAlone) {
     const std::vector<Eigen::Vector3d> queries_mm = mixed_queries(meshes[m], 60.0, 22);
     for (const double reach_mm : {1e30, 20.0, 0.5, 0.0, -1.0}) {
       std::vector<SurfacePoint> answers(queries_mm.size());
+      std::vector<double> signed_mm(queries_mm.size());
       query.closest(queries_mm, reach_mm, answers);
-      for (std::size_t i = 0; i < queries_mm.size(); ++i)
-        ASSERT_TRUE(are_equal(answers[i], query.closest(queries_mm[i], reach_mm)))
-            << "mesh " << m << " point " << i << " reach " << reach_mm;
+      query.signed_distances(queries_mm, reach_mm, signed_mm);
+      for (std::size_t i = 0; i < queries_mm.size(); ++i) {
+        const SurfacePoint alone = query.closest(queries_mm[i], reach_mm);
+        ASSERT_TRUE(are_equal(answers[i], alone)) << "mesh " << m << " point " << i << " reach " << reach_mm;
+        if (alone.triangle < 0 || alone.on_border)
+          ASSERT_TRUE(std::isnan(signed_mm[i])) << "mesh " << m << " point " << i << " reach " << reach_mm;
+        else
+          ASSERT_EQ(signed_mm[i], alone.signed_mm) << "mesh " << m << " point " << i << " reach " << reach_mm;
+      }
     }
   }
   std::vector<SurfacePoint> too_few(1);
   EXPECT_THROW(SurfaceQuery(meshes[0]).closest(mixed_queries(meshes[0], 1.0, 1), 1.0, too_few), Error);
+  std::vector<double> too_few_mm(1);
+  EXPECT_THROW(SurfaceQuery(meshes[0]).signed_distances(mixed_queries(meshes[0], 1.0, 1), 1.0, too_few_mm),
+               Error);
 }
 
 TEST(SurfaceQuery, SeesThroughTrianglesWithoutArea) {
@@ -386,7 +423,7 @@ TEST(SurfaceQuery, GivesTheSameBytesForAnyThreadCount) {
   const TriangleMesh mesh = sphere_mesh(40.0, 4);
   const std::vector<Eigen::Vector3d> queries_mm = random_cube_mm(20000, 60.0, 11);
   const auto run = [&](int threads) {
-    const SurfaceQuery surface(mesh);  // built anew: the tree may differ, the answers not
+    const SurfaceQuery surface(mesh, threads);  // built anew
     std::vector<Eigen::Vector4d> answers(queries_mm.size());
     parallel_for(queries_mm.size(), 256, threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {

@@ -142,8 +142,9 @@ std::string rigid_rows(const ScaleData& data) {
   Runs cold, kept;
   WholeFit fit;
   for (int round = 0; round < data.rounds; ++round) {
-    cold.take([&] { fit = fit_whole(SurfaceQuery(data.cad), points_mm, start_pose(), options); });
-    const SurfaceQuery surface(data.cad);
+    cold.take(
+        [&] { fit = fit_whole(SurfaceQuery(data.cad, data.threads), points_mm, start_pose(), options); });
+    const SurfaceQuery surface(data.cad, data.threads);
     kept.take([&] { fit = fit_whole(surface, points_mm, start_pose(), options); });
     for (PclCase& peer : peers) peer.runs.take([&] { peer.error = error_of(peer.fit(peer.rounds), truth); });
   }
@@ -186,7 +187,7 @@ std::string deviation_rows(const ScaleData& data) {
     for (const auto& [name, points_mm] : orders) {
       const std::filesystem::path scan = data.folder / (file_name(name));
       ours[name].take([&] {
-        const SurfaceQuery surface(data.cad);
+        const SurfaceQuery surface(data.cad, data.threads);
         static_cast<void>(signed_deviation_mm(surface, identity, points_mm, kReachMm, data.threads));
       });
       const Child map = run_child({data.arris.string(), "map", (data.folder / "recipe.toml").string(),
