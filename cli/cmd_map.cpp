@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <array>
@@ -31,6 +32,18 @@ constexpr double kReachMm = 25.0;           // as in a run
 constexpr double kScaleScores = 3.0, kScaleSpacings = 4.0;
 constexpr std::size_t kChunk = 65536;
 constexpr std::size_t kWrittenAtOnce = 4 * kChunk;
+
+/// What reading the drawing needed for a while goes back to the system, before the scan comes.
+CadModel read_cad(const Recipe& recipe, int threads) {
+  CadModel cad = [&] {
+    const Drawing drawing = read_drawing(recipe, false, threads);
+    return prepare_cad(drawing.mesh, drawing.accepted, drawing.others, threads);
+  }();
+#ifdef __GLIBC__
+  ::malloc_trim(0);
+#endif
+  return cad;
+}
 
 /// Where the whole scan's fit begins: frame Scan about the cloud's offset.
 struct Start {
@@ -138,8 +151,7 @@ void print_map(const MapArgs& args, const Recipe& recipe, const std::filesystem:
 
 int run_map(const MapArgs& args) {
   const Recipe recipe = read_recipe(args.recipe);
-  const Drawing drawing = read_drawing(recipe, false, args.threads);
-  const CadModel cad = prepare_cad(drawing.mesh, drawing.accepted, drawing.others, args.threads);
+  const CadModel cad = read_cad(recipe, args.threads);
   Scan scan = read_scan(args.scan, unit_mm(recipe.scan.units));
   stop_if_interrupted();
   const Start start = start_pose(recipe, cad, scan, args.threads);

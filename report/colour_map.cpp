@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "report/number_text.hpp"
 
@@ -15,6 +19,40 @@ constexpr std::array<Rgb, kStepsBeyond> kAbove = {
 constexpr std::array<Rgb, kStepsBeyond> kBelow = {
     {{176, 214, 245}, {100, 168, 226}, {42, 112, 190}, {20, 62, 132}}};
 constexpr Rgb kGreenAbove{128, 196, 118}, kGreenBelow{94, 178, 142};
+
+constexpr std::uint32_t kInfinityBits = 0x7F800000U;
+
+/// Of a size: floats that are not negative are in the order of their bits.
+std::uint32_t size_bits(float value) {
+  return std::bit_cast<std::uint32_t>(value) & 0x7FFFFFFFU;
+}
+
+/// Takes the full bins before a place off it; returns the bin that holds it.
+std::uint32_t bin_of(const std::vector<std::size_t>& bins, std::size_t& place) {
+  std::uint32_t bin = 0;
+  while (place >= bins[bin]) place -= bins[bin++];
+  return bin;
+}
+
+/// The size at this part of all finite ones in their order; none where there are none. Counted by the upper
+/// half of the bits, then by the lower: without a copy of a big scan's values.
+std::optional<float> size_at(std::span<const float> values, double ratio) {
+  constexpr std::uint32_t kHalf = 16, kLow = 0xFFFFU;
+  std::vector<std::size_t> upper(kInfinityBits >> kHalf), lower(kLow + 1);
+  std::size_t count = 0;
+  for (const float value : values) {
+    const std::uint32_t bits = size_bits(value);
+    if (bits >= kInfinityBits) continue;
+    ++upper[bits >> kHalf];
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  auto place = static_cast<std::size_t>(ratio * static_cast<double>(count - 1));
+  const std::uint32_t bin = bin_of(upper, place);
+  for (const float value : values)
+    if (size_bits(value) >> kHalf == bin) ++lower[size_bits(value) & kLow];
+  return std::bit_cast<float>((bin << kHalf) | bin_of(lower, place));
+}
 
 }  // namespace
 
@@ -73,17 +111,8 @@ Rgb ColourMap::no_data() {
 }
 
 ColourMap colour_map_for(std::span<const float> deviation_mm, double tolerance_mm) {
-  std::vector<float> size;  // of a big scan: no more memory than the deviations themselves
-  size.reserve(deviation_mm.size());
-  for (const float d : deviation_mm)
-    if (std::isfinite(d)) size.push_back(std::abs(d));
   const double half = std::max(0.0, 0.5 * tolerance_mm);
-  double target = 3.0 * half;
-  if (!size.empty()) {
-    const auto at = size.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(size.size() - 1));
-    std::nth_element(size.begin(), at, size.end());
-    target = std::max(target, static_cast<double>(*at));
-  }
+  const double target = std::max(3.0 * half, static_cast<double>(size_at(deviation_mm, 0.99).value_or(0.0F)));
   const double step = nice_at_least((target - half) / kStepsBeyond);
   return ColourMap(tolerance_mm, half + kStepsBeyond * step);
 }

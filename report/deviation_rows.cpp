@@ -1,6 +1,7 @@
 #include "report/deviation_rows.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -11,16 +12,21 @@
 namespace arris::report {
 namespace {
 
-template <class Word>
-void append_little_endian(std::string& bytes, Word word) {
-  for (std::size_t i = 0; i < sizeof(Word); ++i) bytes += static_cast<char>((word >> (8 * i)) & 0xFFU);
-}
-void append(std::string& bytes, float value) {
-  append_little_endian(bytes, std::bit_cast<std::uint32_t>(value));
-}
-void append(std::string& bytes, double value) {
-  append_little_endian(bytes, std::bit_cast<std::uint64_t>(value));
-}
+/// A row of the file while it is filled.
+struct Row {
+  std::array<char, 31> bytes;
+  std::size_t size = 0;
+  void add(std::uint8_t byte) { bytes[size++] = static_cast<char>(byte); }
+  void add(float value) { add_little_endian(std::bit_cast<std::uint32_t>(value)); }
+  void add(double value) { add_little_endian(std::bit_cast<std::uint64_t>(value)); }
+
+ private:
+  template <class Word>
+  void add_little_endian(Word word) {
+    for (std::size_t i = 0; i < sizeof(Word); ++i)
+      bytes[size++] = static_cast<char>((word >> (8 * i)) & 0xFFU);
+  }
+};
 
 // A comment is one line of printable ASCII, whatever came in.
 std::string comment(std::string text) {
@@ -62,18 +68,20 @@ void append_deviation_rows(const DeviationRows& rows, std::size_t begin, std::si
   const bool wide = is_wide(rows);
   bytes.reserve(bytes.size() + (end - begin) * deviation_row_bytes(rows));
   for (std::size_t i = begin; i < end; ++i) {
+    Row row;
     const Eigen::Vector3d p = rows.cloud.file_mm(i);
     for (int axis = 0; axis < 3; ++axis) {
       if (wide)
-        append(bytes, p[axis]);
+        row.add(p[axis]);
       else
-        append(bytes, rows.cloud.points_mm[i][axis]);
+        row.add(rows.cloud.points_mm[i][axis]);
     }
     const bool known = i < rows.deviation_mm.size() && std::isfinite(rows.deviation_mm[i]);
     const double d = known ? rounded(rows.deviation_mm[i]) : std::numeric_limits<double>::quiet_NaN();
-    append(bytes, known ? static_cast<float>(d) : std::numeric_limits<float>::quiet_NaN());
+    row.add(known ? static_cast<float>(d) : std::numeric_limits<float>::quiet_NaN());
     const Rgb colour = rows.colours.colour(d);
-    for (const std::uint8_t part : {colour.red, colour.green, colour.blue}) bytes += static_cast<char>(part);
+    for (const std::uint8_t part : {colour.red, colour.green, colour.blue}) row.add(part);
+    bytes.append(row.bytes.data(), row.size);
   }
 }
 

@@ -10,9 +10,9 @@
 namespace arris::packet {
 
 struct Feet {
-  alignas(32) double q_mm[3][kLanes];      ///< the queries, frame of the mesh
-  alignas(32) double limit2_mm2[kLanes];   ///< of what is still nearer; in the end the squared distance
-  alignas(32) double triangle[kLanes];     ///< its number in the mesh, exact; -1: none
+  alignas(32) double q_mm[3][kLanes];     ///< the queries, frame of the mesh
+  alignas(32) double limit2_mm2[kLanes];  ///< of what is still nearer; in the end the squared distance
+  alignas(32) double triangle[kLanes];    ///< its number in the mesh, exact; -1: none
   alignas(32) double foot_mm[3][kLanes];
   alignas(32) double b[kLanes], c[kLanes];  ///< barycentric, of the second and the third corner
   alignas(32) double height_mm[kLanes];     ///< of the query over the foot, along the face's normal
