@@ -1,22 +1,34 @@
 #include "tests/bench/scale/child.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <fstream>
 
 namespace arris::bench {
 namespace {
 
+constexpr int kLookEveryMs = 4;
 constexpr int kNoSuchProgram = 127;  // as a shell says it
 
 double seconds(const timeval& t) {
   return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+}
+
+/// Resident memory of a process that is in no file; 0 when it has ended.
+double anonymous_mb(pid_t pid) {
+  std::ifstream status("/proc/" + std::to_string(pid) + "/status");
+  for (std::string word; status >> word;)
+    if (double kib = 0.0; word == "RssAnon:" && status >> kib) return kib * 1024.0 / 1e6;
+  return 0.0;
 }
 
 /// Starts words[0] with its stdout and stderr at `out`; an error number, 0 when it runs.
@@ -49,8 +61,13 @@ Child run_child(const std::vector<std::string>& words) {
     return child;
   }
   std::array<char, 4096> part{};
-  for (ssize_t n = 0; (n = ::read(ends[0], part.data(), part.size())) > 0;)
+  for (pollfd printed{ends[0], POLLIN, 0};;) {
+    child.anonymous_mb = std::max(child.anonymous_mb, anonymous_mb(pid));
+    if (::poll(&printed, 1, kLookEveryMs) == 0) continue;
+    const ssize_t n = ::read(ends[0], part.data(), part.size());
+    if (n <= 0) break;
     child.out.append(part.data(), static_cast<std::size_t>(n));
+  }
   ::close(ends[0]);
   int status = 0;
   rusage used{};

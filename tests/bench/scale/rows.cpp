@@ -240,7 +240,7 @@ std::string map_rows(const ScaleData& data) {
     return run;
   };
   std::map<int, Runs> runs;
-  std::map<int, double> peak_mb;
+  std::map<int, double> peak_mb, own_mb;
   std::string hash;
   bool same = true;
   double small_mb = 0.0;
@@ -250,34 +250,34 @@ std::string map_rows(const ScaleData& data) {
       const Child run = map_of(scan, threads);
       runs[threads].add(run.wall_s, run.cpu_s);
       peak_mb[threads] = std::max(peak_mb[threads], run.peak_mb);
+      own_mb[threads] = std::max(own_mb[threads], run.anonymous_mb);
       const std::string now = sha256_file(scan.string() + ".map.ply");
       same = same && (hash.empty() || hash == now);
       hash = now;
     }
   }
-  const auto bytes = [&](int threads) { return peak_mb[threads] * 1e6 / kPoints; };
+  const auto bytes = [](double mb) { return mb * 1e6 / kPoints; };
   const double file_bytes = static_cast<double>(std::filesystem::file_size(scan)) / kPoints;
   std::string text = fmt::format(
       "### From file to deviation map, 5,000,000 points\n\n`arris map`: drawing and scan read, the pose "
-      "fitted "
-      "from 2 degrees off, every point measured, the map written and flushed to the disk. Bytes a point: "
-      "peak resident memory, drawing and program included (of a scan of 20,000 points the peak is {:.0f} "
-      "MB); the "
-      "mapped file is {:.0f} bytes a point of it at most.\n\n",
+      "fitted from 2 degrees off, every point measured, the map written and flushed to the disk. Bytes a "
+      "point: peak resident memory, drawing and program included (of a scan of 20,000 points the peak is "
+      "{:.0f} MB), the mapped file ({:.0f} bytes a point) as well; and the peak of what is in no mapped "
+      "file.\n\n",
       small_mb, file_bytes);
-  text += heading(
-      " wall, s | CPU, s | peak, MB | bytes a point, all in | less the mapped file, were all of it resident "
-      "|");
+  text += heading(" wall, s | CPU, s | peak, MB | bytes a point, all in | beyond mapped files |");
   for (const int threads : {1, 2, 8})
-    text += fmt::format("| {} thread{} | {} | {:.0f} | {:.1f} | {:.1f} |\n", threads, threads == 1 ? "" : "s",
-                        runs[threads].text(), peak_mb[threads], bytes(threads),
-                        std::max(0.0, bytes(threads) - file_bytes));
+    text +=
+        fmt::format("| {} thread{} | {} | {:.0f} | {:.1f} | {:.1f} |\n", threads, threads == 1 ? "" : "s",
+                    runs[threads].text(), peak_mb[threads], bytes(peak_mb[threads]), bytes(own_mb[threads]));
   text +=
       fmt::format("\nThe map's bytes are {} for 1, 2 and 8 threads.\n", same ? "the same" : "**different**");
   return text +
-         fmt::format("\nGoals: under 2 s on 2 threads: {:.2f} s, {}; at most 40 bytes a point: {:.1f}, {}.\n",
-                     runs[2].wall_s(), runs[2].wall_s() < 2.0 ? "met" : "**missed**", bytes(2),
-                     bytes(2) <= 40.0 ? "met" : "**missed**");
+         fmt::format(
+             "\nGoals: under 2 s on 2 threads: {:.2f} s, {}; at most 40 bytes a point beyond the mapped "
+             "file: {:.1f}, {}.\n",
+             runs[2].wall_s(), runs[2].wall_s() < 2.0 ? "met" : "**missed**", bytes(own_mb[2]),
+             bytes(own_mb[2]) <= 40.0 ? "met" : "**missed**");
 }
 
 }  // namespace arris::bench
