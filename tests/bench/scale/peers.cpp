@@ -6,6 +6,15 @@
 #include "acquisition/types/error.hpp"
 
 namespace arris::bench {
+namespace {
+
+std::optional<double> printed_s(const std::string& out, const std::string& step) {
+  std::smatch found;
+  const std::regex time(R"(\[)" + step + R"(\] Time: ([0-9.]+) s)");
+  return std::regex_search(out, found, time) ? std::optional(std::stod(found[1])) : std::nullopt;
+}
+
+}  // namespace
 
 std::optional<CloudCompareRun> cloudcompare_distances(const std::filesystem::path& scan,
                                                       const std::filesystem::path& cad) {
@@ -17,9 +26,8 @@ std::optional<CloudCompareRun> cloudcompare_distances(const std::filesystem::pat
   if (run.child.code == 127) return std::nullopt;
   if (run.child.code != 0)
     throw Error(Fault::kInput, "CloudCompare failed: " + run.child.out.substr(0, 2000));
-  static const std::regex kTime(R"(\[ComputeDistances\] Time: ([0-9.]+) s)");
-  std::smatch found;
-  if (std::regex_search(run.child.out, found, kTime)) run.distances_s = std::stod(found[1]);
+  run.distances_s = printed_s(run.child.out, "ComputeDistances");
+  run.first_pass_s = printed_s(run.child.out, "computeApproxDistances");
   return run;
 }
 

@@ -12,7 +12,9 @@ namespace arris::bench {
 /// its distances written. None where it is not installed (Debian package cloudcompare).
 struct CloudCompareRun {
   Child child;
-  std::optional<double> distances_s;  ///< what it prints of the distances alone, where it does
+  // What it prints, where it does: of the first pass, which builds the octree of the points, measures them
+  // roughly and chooses the octree's level from that; of the second, the distances.
+  std::optional<double> first_pass_s, distances_s;
 };
 [[nodiscard]] std::optional<CloudCompareRun> cloudcompare_distances(const std::filesystem::path& scan,
                                                                     const std::filesystem::path& cad);

@@ -180,7 +180,7 @@ std::string deviation_rows(const ScaleData& data) {
   orders["shuffled"] = orders["in order"];
   synthetic::shuffle(orders["shuffled"], 2);
   const std::filesystem::path cad = data.folder / "panel.stl";
-  std::map<std::string, Runs> ours, whole, peer, peer_alone;
+  std::map<std::string, Runs> ours, whole, peer, peer_alone, peer_second;
   for (const auto& [name, points_mm] : orders)
     synthetic::write_points_ply(data.folder / (file_name(name)), points_mm);
   for (int round = 0; round < data.rounds; ++round)
@@ -198,12 +198,15 @@ std::string deviation_rows(const ScaleData& data) {
       const auto run = cloudcompare_distances(scan, cad);
       if (!run) continue;
       peer[name].add(run->child.wall_s, run->child.cpu_s);
-      if (run->distances_s) peer_alone[name].add(*run->distances_s, *run->distances_s);
+      if (!run->distances_s || !run->first_pass_s) continue;
+      const double both_s = *run->first_pass_s + *run->distances_s;
+      peer_alone[name].add(both_s, both_s);
+      peer_second[name].add(*run->distances_s, *run->distances_s);
     }
   std::string text =
       "### Signed deviation of 1,000,000 points\n\nSeconds. *Alone*: in memory, the drawing's tree included; "
-      "of "
-      "CloudCompare what it prints (wall). *Whole*: the command, files read and written; ours fits the pose "
+      "of CloudCompare what it prints (wall): its two passes, the octree of the points included, and the "
+      "second by itself. *Whole*: the command, files read and written; ours fits the pose "
       "as well.\n\n";
   text += heading(" wall | CPU | times ours, wall | CPU |");
   std::string goals;
@@ -211,13 +214,18 @@ std::string deviation_rows(const ScaleData& data) {
     text += fmt::format("| **Arris**, {}, alone | {} | 1 | 1 |\n", name, ours[name].text());
     const bool told = peer_alone.contains(name);
     const double ratio = told ? peer_alone[name].wall_s() / ours[name].wall_s() : 0.0;
-    text += told ? fmt::format("| CloudCompare, {}, alone | {:.3f} | - | {:.1f} | - |\n", name,
-                               peer_alone[name].wall_s(), ratio)
+    const double second = told ? peer_second[name].wall_s() / ours[name].wall_s() : 0.0;
+    text += told ? fmt::format(
+                       "| CloudCompare, {}, alone | {:.3f} | - | {:.1f} | - |\n"
+                       "| CloudCompare, {}, its second pass | {:.3f} | - | {:.1f} | - |\n",
+                       name, peer_alone[name].wall_s(), ratio, name, peer_second[name].wall_s(), second)
                  : fmt::format("| CloudCompare, {}, alone | - | - | - | - |\n", name);
     text += fmt::format("| Arris, {}, whole: `arris map` | {} | 1 | 1 |\n", name, whole[name].text());
     text += fmt::format("| CloudCompare, {}, whole | {} | {} |\n", name, peer[name].text(),
                         peer[name].over(whole[name]));
-    if (told) goals += fmt::format(" {}: {:.1f}, {}.", name, ratio, verdict(ratio, 5.0));
+    if (told)
+      goals += fmt::format(" {}: {:.1f}, {}; its second pass alone {:.1f}.", name, ratio, verdict(ratio, 5.0),
+                           second);
   }
   if (goals.empty()) goals = " CloudCompare is not installed (Debian package cloudcompare): not measured.";
   return text + "\nGoal: 5 times CloudCompare's own time." + goals + "\n";
