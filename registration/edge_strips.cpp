@@ -19,6 +19,9 @@ constexpr double kUnseenStrays = 0.5;     // none seen is no proof that there ar
 constexpr double kMostStrayRatio = 0.05;  // early rounds leave material beyond the edge
 constexpr double kBurrTaus = 4.0, kBurrSpacings = 0.3;  // nearer to the edge a point may well be of it
 constexpr double kHighestBurrMm = 4.0, kBurrGates = 1.5;
+constexpr double kWallDepthMm = 2.0, kWallPerMm = 0.02,
+                 kMostAbove = 2.0;      // strays are above as often as below
+constexpr double kWallGateRatio = 0.5;  // a wall's points scatter across the edge: few of them lie so level
 constexpr std::size_t kChunk = 256;
 
 }  // namespace
@@ -58,14 +61,30 @@ void EdgeStrips::update(const std::vector<SurfacePair>& pairs, const std::vector
         const std::optional<CarriedContour::Foot> foot =
             carried[e]->foot_within(pairs[i].p_mm, point.foot.distance_mm);
         if (!foot) continue;
-        const double height_mm = pairs[i].on_face ? pairs[i].residual_mm : foot->height_mm;
-        const bool beside = foot->across_mm < strip_mm_ && std::abs(height_mm) < gate_mm;
-        point = {e, *foot,
-                 beside ? fan_weight(edges_[e].stations[foot->station].fan_per_mm, foot->across_mm) : 0.0};
+        point = {e, *foot, 0.0, pairs[i].on_face() ? pairs[i].residual_mm : foot->height_mm};
       }
     }
   });
-  for (std::size_t e = 0; e < edges_.size(); ++e) find_seen(e);
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    const double edge_gate_mm = shows_wall(e) ? kWallGateRatio * gate_mm : gate_mm;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      Point& p = points_[i];
+      if (p.edge == e && p.foot.distance_mm < reach_mm_ && pairs[i].same_side &&
+          p.foot.across_mm < strip_mm_ && std::abs(p.height_mm) < edge_gate_mm)
+        p.weight = fan_weight(edges_[e].stations[p.foot.station].fan_per_mm, p.foot.across_mm);
+    }
+    find_seen(e);
+  }
+}
+
+bool EdgeStrips::shows_wall(std::size_t e) const {
+  double below = 0.0, above = 0.0;
+  for (const Point& p : points_) {
+    if (p.edge != e || p.foot.distance_mm > kWallDepthMm || std::abs(p.foot.across_mm) > gate_mm_) continue;
+    if (p.foot.height_mm < -gate_mm_) below += 1.0;
+    if (p.foot.height_mm > gate_mm_) above += 1.0;
+  }
+  return below - kMostAbove * above > kWallPerMm * edges_[e].curve->length_mm();
 }
 
 void EdgeStrips::find_seen(std::size_t e) {

@@ -31,7 +31,8 @@ class EdgeStrips {
   struct Point {
     std::size_t edge = 0;
     CarriedContour::Foot foot;
-    double weight = 0.0;  ///< undoes the fan of a bent contour; 0: no point of a strip
+    double weight = 0.0;     ///< undoes the fan of a bent contour; 0: no point of a strip
+    double height_mm = 0.0;  ///< above the surface, or above the edge's own where the point is beyond it
   };
   [[nodiscard]] const std::vector<Point>& points() const { return points_; }
   /// Adds points [begin, end): offset_mm is how far each edge lies inside the material of the carried
@@ -91,6 +92,8 @@ class EdgeStrips {
     BurrBins burrs;
   };
   void find_seen(std::size_t e);
+  /// Points stand below the edge, in line with it: the cut's own wall is in the scan.
+  [[nodiscard]] bool shows_wall(std::size_t e) const;
   /// In a strip 1 mm wide all along the edge.
   [[nodiscard]] static double points_per_mm(const Edge& edge);
   /// Of each edge, when that with the fewest points is looked at with tau_mm.

@@ -331,7 +331,7 @@ class SurfaceFitter {
     fit_.sigma_mm =
         std::max({residual_sigma_mm(pairs_, scale_mm_), 0.5 * scan_.noise_sigma_mm, kLeastSigmaMm});
     fit_.pairs = static_cast<std::size_t>(
-        std::count_if(pairs_.begin(), pairs_.end(), [](const SurfacePair& pair) { return pair.on_face; }));
+        std::count_if(pairs_.begin(), pairs_.end(), [](const SurfacePair& pair) { return pair.on_face(); }));
     lay_strips(fit_.shift_mm);
   }
 

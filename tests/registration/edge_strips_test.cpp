@@ -11,7 +11,7 @@
 namespace arris {
 namespace {
 
-constexpr double kStripMm = 10.0, kReachMm = 20.0, kSpacingMm = 2.0, kTauMm = 0.1;
+constexpr double kStripMm = 10.0, kReachMm = 20.0, kSpacingMm = 2.0, kTauMm = 0.1, kGateMm = 0.2;
 
 /// A flat plate's hole, points of the material beside it and strays in the opening.
 struct Strip {
@@ -21,7 +21,8 @@ struct Strip {
   std::vector<Eigen::Vector3d> still = std::vector<Eigen::Vector3d>(basis.size(), Eigen::Vector3d::Zero());
   EdgeStrips strips{{&cad.contours[0]}, basis, kStripMm, kSpacingMm, 0.0};
 
-  Strip(double stray_ratio, std::uint64_t seed) {
+  /// wall_per_mm: points below each mm of the edge, down to 2 mm.
+  Strip(double stray_ratio, std::uint64_t seed, double wall_per_mm = 0.0) {
     synthetic::Random random(seed);
     const Curve& curve = cad.contours[0];
     std::vector<SurfacePair> pairs;
@@ -35,14 +36,24 @@ struct Strip {
         if (std::abs(curve.nearest(pair.p_mm).distance_mm - std::abs(g_mm)) > 1e-6)
           continue;  // straight sides alone: uniform along and across is uniform in area there
         pair.normal = curve.normal(s_mm);
-        pair.on_face = g_mm > 0.0;
+        pair.same_side = true;
+        pair.on_border = g_mm <= 0.0;
+        pair.residual_mm = 0.95 * kGateMm * std::sin(left);
         pairs.push_back(pair);
       }
     };
     const double density_per_mm2 = 1.0 / (kSpacingMm * kSpacingMm);
     shower(density_per_mm2, 0.0, kStripMm);
     shower(stray_ratio * density_per_mm2, -kReachMm, 0.0);
-    strips.update(pairs, still, kReachMm, 0.2, 1);
+    for (double s_mm = 0.0; s_mm < curve.length_mm() && wall_per_mm > 0.0; s_mm += 1.0 / wall_per_mm) {
+      SurfacePair pair;
+      pair.residual_mm = -random.uniform(0.0, 2.0);
+      pair.p_mm = curve.point_mm(s_mm) + pair.residual_mm * curve.normal(s_mm);
+      pair.normal = curve.normal(s_mm);
+      pair.same_side = true;
+      pairs.push_back(pair);
+    }
+    strips.update(pairs, still, kReachMm, kGateMm, 1);
   }
 };
 
@@ -58,6 +69,20 @@ TEST(EdgeStrips, WithoutStraysSaysHowFewThereMayBe) {
   const double ratio = Strip(0.0, 1).strips.stray_ratio();
   EXPECT_GT(ratio, 0.0);
   EXPECT_LT(ratio, 2e-3);
+}
+
+/// Law: of a wall's points, which scatter across the edge, only those level with it within half the gate are
+/// taken for points of the face; without a wall the whole gate is open.
+TEST(EdgeStrips, AWallInTheScanHalvesTheGate) {
+  for (const double wall_per_mm : {0.5, 0.002}) {
+    double highest_mm = 0.0;
+    const Strip strip(0.0, 5, wall_per_mm);
+    for (const EdgeStrips::Point& point : strip.strips.points())
+      if (point.weight > 0.0) highest_mm = std::max(highest_mm, std::abs(point.height_mm));
+    const double gate_mm = wall_per_mm > 0.1 ? 0.5 * kGateMm : 0.95 * kGateMm;
+    EXPECT_LE(highest_mm, gate_mm);
+    EXPECT_GT(highest_mm, 0.9 * gate_mm);
+  }
 }
 
 /// Law: tangents and resistance together are the whole change of the points' cost, worked out here anew.

@@ -56,8 +56,7 @@ TEST(NodeBand, HoldsAllThatAreNearAndIsNarrowWhateverTheOrderTheyCameIn) {
   std::size_t widest = 0;
   for (std::size_t a = 0; a < band.nodes(); ++a) {
     widest = std::max(widest, a - band.first(a));
-    for (std::size_t b = 0; b < band.first(a); ++b)
-      EXPECT_GE((points_mm[a] - points_mm[b]).norm(), kReachMm);
+    for (std::size_t b = 0; b < band.first(a); ++b) EXPECT_GE((points_mm[a] - points_mm[b]).norm(), kReachMm);
   }
   EXPECT_LE(widest, 24u);  // three abreast, both ways round, somewhat more than three rings: of 120
 }
@@ -184,8 +183,7 @@ struct SheetResidual {
     for (std::size_t k = 0; k < node.size(); ++k)
       shift_mm[static_cast<std::size_t>(node[k])] = Eigen::Map<const Eigen::Vector3d>(shift[k]);
     const Eigen::Vector3d strain = cell->mid_strain(shift_mm, prior->thickness_mm);
-    const Eigen::Vector3d bend =
-        2.0 / prior->thickness_mm * (strain - cell->mid_strain(shift_mm, 0.0));
+    const Eigen::Vector3d bend = 2.0 / prior->thickness_mm * (strain - cell->mid_strain(shift_mm, 0.0));
     const double share = std::sqrt(area_mm2) / prior->patch_mm;
     for (int k = 0; k < 3; ++k) {
       const double twice = k == 1 ? std::sqrt(2.0) : 1.0;
@@ -242,7 +240,8 @@ TEST(SurfaceSystem, FindsTheFieldAndTheCovarianceThatCeresFinds) {
   for (int round = 0; round < 30; ++round) {
     const SurfaceSystem system = equations();
     const Eigen::VectorXd move = -SurfaceFactor(system).solve(system.gradient);
-    for (std::size_t j = 0; j < ours.size(); ++j) ours[j] += move.segment<3>(static_cast<Eigen::Index>(3 * j));
+    for (std::size_t j = 0; j < ours.size(); ++j)
+      ours[j] += move.segment<3>(static_cast<Eigen::Index>(3 * j));
   }
 
   std::vector<Eigen::Vector3d> theirs(basis.size(), Eigen::Vector3d::Zero());

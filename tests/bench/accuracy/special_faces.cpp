@@ -19,7 +19,6 @@ constexpr double kThicknessMm = 10.0, kPathStepMm = 2.0, kTruthStepMm = 0.25, kC
 constexpr std::int64_t kPoints = 24000;
 constexpr double kWallRatio = 0.02;  // points on the wall of the cut a face point: one for each mm of rim
 constexpr double kMoreMm = 0.02;
-constexpr int kMostSeeds = 5;
 
 PlatePart thick_plate() {
   synthetic::PlateShape shape = synthetic::asymmetric_plate();
@@ -74,7 +73,7 @@ struct FaceScans {
 
 FaceScans face_scans(const PlatePart& part, const CadModel& cad, bool walls, bool far,
                      const SpecialSetup& setup) {
-  std::vector<FaceOutcome> outcomes(static_cast<std::size_t>(std::min(setup.seeds, kMostSeeds)));
+  std::vector<FaceOutcome> outcomes(static_cast<std::size_t>(setup.seeds));
   parallel_for(outcomes.size(), 1, setup.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) outcomes[i] = face_scan(part, cad, walls, far, i + 1);
   });
