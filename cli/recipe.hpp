@@ -97,7 +97,7 @@ struct Recipe {
   struct Registration {
     std::string method = "surface";
     double min_seen_ratio = 0.6;
-    double max_unseen_mm = 100.0;
+    std::optional<double> max_unseen_mm;
     double max_sd_mm = 1.0;
     Subdivision subdivision;
     Surface surface;

@@ -240,9 +240,10 @@ std::vector<Key> registration_keys(Recipe::Registration& registration) {
        .max = 1.0},
       {.name = "registration.max_unseen_mm",
        .slot = &registration.max_unseen_mm,
-       .about = "longest stretch of contour that the scan may miss; more is refused",
+       .about = "longest stretch of contour that the scan may miss; unset: 200 with method surface, else 100",
        .min = 0.0,
-       .max = 1e5},
+       .max = 1e5,
+       .example = "100.0"},
       {.name = "registration.max_sd_mm",
        .slot = &registration.max_sd_mm,
        .about = "method surface: a contour whose place across is known worse than this standard deviation is "

@@ -94,7 +94,8 @@ RegistrationOptions registration_options(const Recipe& recipe, int threads) {
   options.projection.distance_mm = recipe.registration.projection.distance_mm;
   options.projection.max_residual_mm = recipe.registration.projection.max_residual_mm;
   options.min_seen_ratio = recipe.registration.min_seen_ratio;
-  options.max_unseen_mm = recipe.registration.max_unseen_mm;
+  options.max_unseen_mm = recipe.registration.max_unseen_mm.value_or(
+      options.method == RegistrationMethod::kSurface ? kSurfaceUnseenMm : kUnseenMm);
   options.mid_depth_mm = 0.5 * recipe.part.thickness_mm.value_or(0.0);
   options.band_mm = options.coarse.band_mm = options.rigid.band_mm = options.surface.band_mm = s.band_mm;
   options.max_sd_mm = recipe.registration.max_sd_mm;

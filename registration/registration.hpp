@@ -22,6 +22,11 @@ enum class RegistrationMethod { kRigid, kSubdivision, kProjection, kSurface };
 /// What follows subdivision ICP.
 enum class RefineMethod { kNone, kCeres };
 
+/// Longest stretch of contour without data, when the recipe names none. A surface field carries such a
+/// stretch by the rest of the contour and knows how well (max_sd_mm): on the finite element parts, gaps up to
+/// its 200 mm stay inside the stated bound.
+inline constexpr double kUnseenMm = 100.0, kSurfaceUnseenMm = 200.0;
+
 /// Everything the recipe may choose about registration.
 struct RegistrationOptions {
   RegistrationMethod method = RegistrationMethod::kSurface;
@@ -33,11 +38,11 @@ struct RegistrationOptions {
   EdgeFitOptions edge;
   ProjectionOptions projection;
   ContourRole role = ContourRole::kEdge;
-  double band_mm = 60.0;         ///< where the field speaks
-  double min_seen_ratio = 0.6;   ///< of each contour's length; below it: refused
-  double max_unseen_mm = 100.0;  ///< longest stretch of contour without data; above it: refused
-  double max_sd_mm = 1.0;        ///< method surface: a contour known worse than this across is refused
-  double mid_depth_mm = 0.0;     ///< of the mid-surface below the scanned face, for the strain; 0: not known
+  double band_mm = 60.0;                    ///< where the field speaks
+  double min_seen_ratio = 0.6;              ///< of each contour's length; below it: refused
+  double max_unseen_mm = kSurfaceUnseenMm;  ///< longest stretch of contour without data; above it: refused
+  double max_sd_mm = 1.0;     ///< method surface: a contour known worse than this across is refused
+  double mid_depth_mm = 0.0;  ///< of the mid-surface below the scanned face, for the strain; 0: not known
   int threads = 0;
 };
 
