@@ -10,7 +10,7 @@ namespace arris {
 CommonHeight::CommonHeight(const std::vector<SurfacePair>& pairs, double cell_mm, double gate_mm) {
   std::vector<std::pair<std::array<int, 3>, const SurfacePair*>> in_cells;
   for (const SurfacePair& pair : pairs) {
-    if (!pair.on_face() || std::abs(pair.residual_mm) > gate_mm) continue;
+    if (!pair.on_face || std::abs(pair.residual_mm) > gate_mm) continue;
     const Eigen::Array3i cell = (pair.foot_mm / cell_mm).array().floor().cast<int>();
     in_cells.push_back({{cell.x(), cell.y(), cell.z()}, &pair});
   }

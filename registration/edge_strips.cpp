@@ -38,7 +38,7 @@ EdgeStrips::EdgeStrips(const std::vector<const Curve*>& edges, const SurfaceBasi
 }
 
 void EdgeStrips::update(const std::vector<SurfacePair>& pairs, const std::vector<Eigen::Vector3d>& shift_mm,
-                        double reach_mm, double gate_mm, int threads) {
+                        double reach_mm, double gate_mm, bool walls_count, int threads) {
   reach_mm_ = reach_mm;
   gate_mm_ = gate_mm;
   std::vector<std::optional<CarriedContour>> carried(edges_.size());
@@ -61,16 +61,16 @@ void EdgeStrips::update(const std::vector<SurfacePair>& pairs, const std::vector
         const std::optional<CarriedContour::Foot> foot =
             carried[e]->foot_within(pairs[i].p_mm, point.foot.distance_mm);
         if (!foot) continue;
-        point = {e, *foot, 0.0, pairs[i].on_face() ? pairs[i].residual_mm : foot->height_mm};
+        point = {e, *foot, 0.0, pairs[i].on_face ? pairs[i].residual_mm : foot->height_mm};
       }
     }
   });
   for (std::size_t e = 0; e < edges_.size(); ++e) {
-    const double edge_gate_mm = shows_wall(e) ? kWallGateRatio * gate_mm : gate_mm;
+    const double edge_gate_mm = walls_count && shows_wall(e) ? kWallGateRatio * gate_mm : gate_mm;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       Point& p = points_[i];
-      if (p.edge == e && p.foot.distance_mm < reach_mm_ && pairs[i].same_side &&
-          p.foot.across_mm < strip_mm_ && std::abs(p.height_mm) < edge_gate_mm)
+      if (p.edge == e && p.foot.distance_mm < reach_mm_ && p.foot.across_mm < strip_mm_ &&
+          std::abs(p.height_mm) < edge_gate_mm)
         p.weight = fan_weight(edges_[e].stations[p.foot.station].fan_per_mm, p.foot.across_mm);
     }
     find_seen(e);

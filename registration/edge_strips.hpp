@@ -24,9 +24,9 @@ class EdgeStrips {
              double spacing_mm, double out_mm);
 
   /// Renews the strips: pairs within reach_mm of an edge carried by shift_mm, and within gate_mm of the
-  /// surface.
+  /// surface; at edges that show a wall, and when walls count, half of that.
   void update(const std::vector<SurfacePair>& pairs, const std::vector<Eigen::Vector3d>& shift_mm,
-              double reach_mm, double gate_mm, int threads);
+              double reach_mm, double gate_mm, bool walls_count, int threads);
 
   struct Point {
     std::size_t edge = 0;

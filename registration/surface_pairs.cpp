@@ -74,8 +74,8 @@ void pair_surface(const CadModel& cad, const ScanModel& scan, const std::vector<
       SurfacePair& pair = pairs[i];
       pair.p_mm = cad_from_scan * scan.points_mm[points[i]];
       find_partner(cad, basis, shift_mm, reach_mm, pair);
-      pair.same_side = pair.row.usable() &&
-                       normals_agree(scan, pair.normal, cad_from_scan.linear() * scan.normals[points[i]]);
+      pair.on_face = pair.row.usable() && !pair.on_border &&
+                     normals_agree(scan, pair.normal, cad_from_scan.linear() * scan.normals[points[i]]);
     }
   });
 }
@@ -83,7 +83,7 @@ void pair_surface(const CadModel& cad, const ScanModel& scan, const std::vector<
 double residual_sigma_mm(const std::vector<SurfacePair>& pairs, double scale_mm) {
   std::vector<double> sizes;
   for (const SurfacePair& pair : pairs)
-    if (pair.on_face() && std::abs(pair.residual_mm) < 2.0 * scale_mm)
+    if (pair.on_face && std::abs(pair.residual_mm) < 2.0 * scale_mm)
       sizes.push_back(std::abs(pair.residual_mm));
   return 1.4826 * median_of(std::move(sizes));
 }
@@ -93,7 +93,7 @@ void add_surface(const std::vector<SurfacePair>& pairs, std::size_t begin, std::
   std::vector<double> shares;
   for (std::size_t i = begin; i < end; ++i) {
     const SurfacePair& pair = pairs[i];
-    if (!pair.on_face()) continue;
+    if (!pair.on_face) continue;
     shares.clear();
     for (const BasisRow::Weights& w : pair.row.weight) shares.push_back(w[BasisRow::kValue]);
     const double weight =

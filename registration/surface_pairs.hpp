@@ -21,8 +21,7 @@ struct SurfacePair {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();   ///< deformed
   double residual_mm = 0.0;                            ///< out of the material
   bool on_border = false;                              ///< the partner lies on the rim of the face
-  bool same_side = false;                              ///< the normals agree: no point of a wall
-  [[nodiscard]] bool on_face() const { return same_side && !on_border; }
+  bool on_face = false;  ///< the partner lies on the face, not on its rim, and the normals agree
 };
 
 /// Scan points within reach_mm of an accepted contour at a rigid motion, as pairs without partner yet.

@@ -217,6 +217,7 @@ class SurfaceFitter {
   /// far more of them to be seen and no more material to lie beyond them.
   [[nodiscard]] double seen_better_by_mm() {
     double best_mm = 0.0;
+    lay_strips(fit_.shift_mm, false);
     const double seen_mm = strips_->seen_mm(), worth_mm = kWorthSeenRatio * strips_->length_mm();
     if (strips_->length_mm() - seen_mm < worth_mm) return best_mm;
     const std::size_t beyond = strips_->points_beyond();
@@ -226,7 +227,7 @@ class SurfaceFitter {
         std::vector<Eigen::Vector3d> moved = fit_.shift_mm;
         const double by_mm = kElsewhereMm / kElsewhereSteps * step;
         for (Eigen::Vector3d& shift : moved) shift += by_mm * direction;
-        lay_strips(moved);
+        lay_strips(moved, false);
         if (strips_->seen_mm() <= most_mm || strips_->points_beyond() > beyond + kFewBeyond) continue;
         most_mm = strips_->seen_mm();
         best_mm = std::abs(by_mm);
@@ -331,12 +332,13 @@ class SurfaceFitter {
     fit_.sigma_mm =
         std::max({residual_sigma_mm(pairs_, scale_mm_), 0.5 * scan_.noise_sigma_mm, kLeastSigmaMm});
     fit_.pairs = static_cast<std::size_t>(
-        std::count_if(pairs_.begin(), pairs_.end(), [](const SurfacePair& pair) { return pair.on_face(); }));
+        std::count_if(pairs_.begin(), pairs_.end(), [](const SurfacePair& pair) { return pair.on_face; }));
     lay_strips(fit_.shift_mm);
   }
 
-  void lay_strips(const std::vector<Eigen::Vector3d>& shift_mm) {
-    strips_->update(pairs_, shift_mm, strip_reach_mm_, kGateSigmas * fit_.sigma_mm, options_.threads);
+  void lay_strips(const std::vector<Eigen::Vector3d>& shift_mm, bool walls_count = true) {
+    strips_->update(pairs_, shift_mm, strip_reach_mm_, kGateSigmas * fit_.sigma_mm, walls_count,
+                    options_.threads);
   }
 
   /// Sums add(begin, end, system) over fixed chunks, in their order.

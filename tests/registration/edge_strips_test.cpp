@@ -36,8 +36,7 @@ struct Strip {
         if (std::abs(curve.nearest(pair.p_mm).distance_mm - std::abs(g_mm)) > 1e-6)
           continue;  // straight sides alone: uniform along and across is uniform in area there
         pair.normal = curve.normal(s_mm);
-        pair.same_side = true;
-        pair.on_border = g_mm <= 0.0;
+        pair.on_face = g_mm > 0.0;
         pair.residual_mm = 0.95 * kGateMm * std::sin(left);
         pairs.push_back(pair);
       }
@@ -50,10 +49,10 @@ struct Strip {
       pair.residual_mm = -random.uniform(0.0, 2.0);
       pair.p_mm = curve.point_mm(s_mm) + pair.residual_mm * curve.normal(s_mm);
       pair.normal = curve.normal(s_mm);
-      pair.same_side = true;
+      pair.on_face = true;
       pairs.push_back(pair);
     }
-    strips.update(pairs, still, kReachMm, kGateMm, 1);
+    strips.update(pairs, still, kReachMm, kGateMm, true, 1);
   }
 };
 
