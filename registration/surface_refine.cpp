@@ -40,6 +40,7 @@ constexpr double kUnknownThicknessWiden = 2.0;                 // the mid-surfac
 constexpr double kElsewhereMm = 12.0, kWorthSeenRatio = 0.13;  // of the edges' length
 constexpr int kElsewhereSteps = 6;
 constexpr std::size_t kFewBeyond = 2;
+constexpr double kBeliedSpacings = 2.0;
 constexpr int kMostAverages = 8;   // rounds of messages between points and edges
 constexpr std::size_t kParts = 2;  // chunks of a list: each needs a system of its own
 
@@ -218,22 +219,29 @@ class SurfaceFitter {
   [[nodiscard]] double seen_better_by_mm() {
     double best_mm = 0.0;
     lay_strips(fit_.shift_mm, false);
-    const double seen_mm = strips_->seen_mm(), worth_mm = kWorthSeenRatio * strips_->length_mm();
-    if (strips_->length_mm() - seen_mm < worth_mm) return best_mm;
+    const double worth_mm = kWorthSeenRatio * strips_->length_mm();
+    if (strips_->length_mm() - strips_->seen_mm() < worth_mm) return best_mm;
     const std::size_t beyond = strips_->points_beyond();
-    double most_mm = seen_mm + worth_mm;
+    double most_mm = shown_mm() + worth_mm;
     for (const Eigen::Vector3d& direction : along_contours())
       for (int step = -kElsewhereSteps; step <= kElsewhereSteps; ++step) {
         std::vector<Eigen::Vector3d> moved = fit_.shift_mm;
         const double by_mm = kElsewhereMm / kElsewhereSteps * step;
         for (Eigen::Vector3d& shift : moved) shift += by_mm * direction;
         lay_strips(moved, false);
-        if (strips_->seen_mm() <= most_mm || strips_->points_beyond() > beyond + kFewBeyond) continue;
-        most_mm = strips_->seen_mm();
+        if (shown_mm() <= most_mm || strips_->points_beyond() > beyond + kFewBeyond) continue;
+        most_mm = shown_mm();
         best_mm = std::abs(by_mm);
       }
     lay_strips(fit_.shift_mm);
     return best_mm;
+  }
+
+  /// Length of the edges that the scan shows; a point beyond one, where it seems to be seen, belies some of
+  /// it.
+  [[nodiscard]] double shown_mm() const {
+    return strips_->seen_mm() -
+           kBeliedSpacings * scan_.spacing_mm * static_cast<double>(strips_->points_beyond());
   }
 
   /// The two directions in which the contours extend most.
