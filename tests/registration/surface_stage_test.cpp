@@ -7,7 +7,7 @@
 namespace arris {
 namespace {
 
-// A slot that slid is refused through the real program: FePartsDirty.ASlotThatSlidIsRefusedOrRight.
+// A slot that slid is refused through the real program: SlidSlot.IsRefusedOrRight.
 TEST(Slide, OneSmallerThanTheLeastIsNoRefusalAndALargerOneIs) {
   for (const double spacing_mm : {0.3, 2.0, 4.0, 7.0}) {
     const double least_mm = std::max(4.0, 1.5 * spacing_mm);
