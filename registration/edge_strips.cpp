@@ -65,26 +65,27 @@ void EdgeStrips::update(const std::vector<SurfacePair>& pairs, const std::vector
       }
     }
   });
-  for (std::size_t e = 0; e < edges_.size(); ++e) {
-    const double edge_gate_mm = walls_count && shows_wall(e) ? kWallGateRatio * gate_mm : gate_mm;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      Point& p = points_[i];
-      if (p.edge == e && p.foot.distance_mm < reach_mm_ && p.foot.across_mm < strip_mm_ &&
-          std::abs(p.height_mm) < edge_gate_mm)
-        p.weight = fan_weight(edges_[e].stations[p.foot.station].fan_per_mm, p.foot.across_mm);
-    }
-    find_seen(e);
-  }
+  std::vector<double> edge_gate_mm(edges_.size(), gate_mm);
+  if (walls_count)
+    for (const std::size_t e : with_walls()) edge_gate_mm[e] *= kWallGateRatio;
+  for (Point& p : points_)
+    if (p.foot.distance_mm < reach_mm_ && p.foot.across_mm < strip_mm_ &&
+        std::abs(p.height_mm) < edge_gate_mm[p.edge])
+      p.weight = fan_weight(edges_[p.edge].stations[p.foot.station].fan_per_mm, p.foot.across_mm);
+  for (std::size_t e = 0; e < edges_.size(); ++e) find_seen(e);
 }
 
-bool EdgeStrips::shows_wall(std::size_t e) const {
-  double below = 0.0, above = 0.0;
+std::vector<std::size_t> EdgeStrips::with_walls() const {
+  std::vector<double> below(edges_.size(), 0.0), above = below;
   for (const Point& p : points_) {
-    if (p.edge != e || p.foot.distance_mm > kWallDepthMm || std::abs(p.foot.across_mm) > gate_mm_) continue;
-    if (p.foot.height_mm < -gate_mm_) below += 1.0;
-    if (p.foot.height_mm > gate_mm_) above += 1.0;
+    if (p.foot.distance_mm > kWallDepthMm || std::abs(p.foot.across_mm) > gate_mm_) continue;
+    if (p.foot.height_mm < -gate_mm_) below[p.edge] += 1.0;
+    if (p.foot.height_mm > gate_mm_) above[p.edge] += 1.0;
   }
-  return below - kMostAbove * above > kWallPerMm * edges_[e].curve->length_mm();
+  std::vector<std::size_t> found;
+  for (std::size_t e = 0; e < edges_.size(); ++e)
+    if (below[e] - kMostAbove * above[e] > kWallPerMm * edges_[e].curve->length_mm()) found.push_back(e);
+  return found;
 }
 
 void EdgeStrips::find_seen(std::size_t e) {

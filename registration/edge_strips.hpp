@@ -92,8 +92,8 @@ class EdgeStrips {
     BurrBins burrs;
   };
   void find_seen(std::size_t e);
-  /// Points stand below the edge, in line with it: the cut's own wall is in the scan.
-  [[nodiscard]] bool shows_wall(std::size_t e) const;
+  /// Edges below which points stand in line with them: the cut's own wall is in the scan.
+  [[nodiscard]] std::vector<std::size_t> with_walls() const;
   /// In a strip 1 mm wide all along the edge.
   [[nodiscard]] static double points_per_mm(const Edge& edge);
   /// Of each edge, when that with the fewest points is looked at with tau_mm.

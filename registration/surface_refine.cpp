@@ -215,33 +215,34 @@ class SurfaceFitter {
 
   /// Edges that seem missing may lie elsewhere: a fit that slid too far along a slot sees the slot's ends as
   /// gaps, and nothing calls it back. How far the contours would have to move along the part, if at all, for
-  /// far more of them to be seen and no more material to lie beyond them.
+  /// far more of them to be seen and no more material to lie beyond them. The last that is asked of the
+  /// strips: they are left where it looked.
   [[nodiscard]] double seen_better_by_mm() {
     double best_mm = 0.0;
     lay_strips(fit_.shift_mm, false);
     const double worth_mm = kWorthSeenRatio * strips_->length_mm();
     if (strips_->length_mm() - strips_->seen_mm() < worth_mm) return best_mm;
     const std::size_t beyond = strips_->points_beyond();
-    double most_mm = shown_mm() + worth_mm;
+    double most_mm = shown_mm(beyond) + worth_mm;
     for (const Eigen::Vector3d& direction : along_contours())
       for (int step = -kElsewhereSteps; step <= kElsewhereSteps; ++step) {
         std::vector<Eigen::Vector3d> moved = fit_.shift_mm;
         const double by_mm = kElsewhereMm / kElsewhereSteps * step;
         for (Eigen::Vector3d& shift : moved) shift += by_mm * direction;
         lay_strips(moved, false);
-        if (shown_mm() <= most_mm || strips_->points_beyond() > beyond + kFewBeyond) continue;
-        most_mm = shown_mm();
+        const std::size_t beyond_now = strips_->points_beyond();
+        const double shown_now_mm = shown_mm(beyond_now);
+        if (shown_now_mm <= most_mm || beyond_now > beyond + kFewBeyond) continue;
+        most_mm = shown_now_mm;
         best_mm = std::abs(by_mm);
       }
-    lay_strips(fit_.shift_mm);
     return best_mm;
   }
 
   /// Length of the edges that the scan shows; a point beyond one, where it seems to be seen, belies some of
   /// it.
-  [[nodiscard]] double shown_mm() const {
-    return strips_->seen_mm() -
-           kBeliedSpacings * scan_.spacing_mm * static_cast<double>(strips_->points_beyond());
+  [[nodiscard]] double shown_mm(std::size_t beyond) const {
+    return strips_->seen_mm() - kBeliedSpacings * scan_.spacing_mm * static_cast<double>(beyond);
   }
 
   /// The two directions in which the contours extend most.
