@@ -9,6 +9,7 @@
 #include "registration/path_symmetry.hpp"
 #include "registration/pose_evidence.hpp"
 #include "registration/pose_search.hpp"
+#include "registration/support_fit.hpp"
 #include "registration/unit_guess.hpp"
 
 namespace arris {
@@ -31,6 +32,11 @@ constexpr double kNotWorseRatio = 0.95;     // of the strict misfits: who wins b
 constexpr std::size_t kNearSample = 500;
 constexpr double kAlsoFitsRatio = 1.5;     // of what the best pose leaves: the other is a fit if it is one
 constexpr double kSelfMotionRatio = 0.06;  // of the contour's size: how well a motion of the drawing is known
+constexpr int kFewestConfirming = 3;
+constexpr double kConfirmsSpacings = 0.5;   // beyond the spacing
+constexpr double kConfirmedCapRatio = 0.4;  // as kFitsCapRatio
+constexpr std::size_t kSharpened = 4;       // of the best poses, when none fits
+constexpr int kSharpeningRounds = 3, kSharpeningPoints = 500;
 constexpr double kQuarterMissing = 0.78, kTenthMissing = 0.92;  // shown of the contours
 
 std::string millimetres(double value_mm) {
@@ -94,6 +100,13 @@ class CoarseSearch {
     return pose.misfit.shown_ratio >= kWellShown && pose.misfit.against_ratio <= kMostAgainstWhole &&
            beyond_spacing(pose.misfit.seen_mm, scan_) <= kSeenCapRatio * search_.score().cap_mm();
   }
+  /// A pose that leaves much on the contours that it was fitted to, no more than where nothing can be told,
+  /// and that others of the drawing confirm, which took no part in the fit.
+  [[nodiscard]] bool confirmed_by_others(const PoseCandidate& pose) const {
+    return pose.misfit.others >= kFewestConfirming && not_contradicted(pose) &&
+           pose.misfit.others_mm <= kConfirmsSpacings * scan_.spacing_mm &&
+           beyond_spacing(pose.misfit.patient_mm, scan_) <= kConfirmedCapRatio * search_.score().cap_mm();
+  }
   /// Best first, those that are never taken last.
   void sort(std::vector<PoseCandidate>& found) const {
     sort_by_misfit(found);
@@ -107,6 +120,11 @@ class CoarseSearch {
   }
   [[nodiscard]] std::vector<PoseCandidate> with_turned(std::vector<PoseCandidate> found);
   [[nodiscard]] std::vector<PoseCandidate> all_candidates();
+  [[nodiscard]] bool fits_at_last(const std::vector<PoseCandidate>& found) const {
+    return fits(found, kFitsCapRatio) || fits_where_seen(found.front()) || confirmed_by_others(found.front());
+  }
+  [[nodiscard]] PoseCandidate sharpened(PoseCandidate pose);
+  [[nodiscard]] std::vector<PoseCandidate> all_sharpened(std::vector<PoseCandidate> found);
   void take(const PoseCandidate& best);
   void refuse_no_start();
   void refuse_no_fit(const PoseCandidate& best);
@@ -254,6 +272,36 @@ void CoarseSearch::refuse_no_fit(const PoseCandidate& best) {
   result_.unit_ratio = unit_that_fits(cad_, scan_);
 }
 
+/// The best of a pose and of those that the edge by support makes of it in turn.
+PoseCandidate CoarseSearch::sharpened(PoseCandidate pose) {
+  RigidIcpOptions icp;
+  icp.surface_points = kSharpeningPoints;
+  icp.band_mm = options_.band_mm;
+  icp.threads = options_.threads;
+  const LightScan& scan = light(pose.flip);
+  RigidMotion start = pose.scan_from_cad;
+  for (int round = 0; round < kSharpeningRounds; ++round) {
+    const RigidIcpResult fit = fit_to_support(cad_, scan_, start, {}, icp).rigid;
+    if (!fit.usable()) break;
+    start = fit.scan_from_cad;
+    const PoseMisfit misfit = search_.score().of(scan, start);
+    if (misfit.patient_mm >= pose.misfit.patient_mm) break;
+    pose.scan_from_cad = start;
+    pose.misfit = misfit;
+  }
+  return pose;
+}
+
+/// The best few poses, of which none fits, on the edge by support: extracted points, a spacing inside it and
+/// some of them strays, may be what is left, and what hides a pose.
+std::vector<PoseCandidate> CoarseSearch::all_sharpened(std::vector<PoseCandidate> found) {
+  sort_by_misfit(found);
+  for (std::size_t i = 0; i < std::min(kSharpened, found.size()); ++i)
+    if (found[i].usable()) found[i] = sharpened(std::move(found[i]));
+  sort(found);
+  return found;
+}
+
 /// A scan whose mirror image fits, or that fits inside out, is an input error and not a pose.
 bool CoarseSearch::refuse_wrong_hand(const std::vector<PoseCandidate>& found) {
   const PoseCandidate& best = found.front();
@@ -263,7 +311,8 @@ bool CoarseSearch::refuse_wrong_hand(const std::vector<PoseCandidate>& found) {
   const std::size_t refined = good ? kRefinedOfGood : kRefined;
   const std::vector<PoseCandidate> mirrored =
       search_.candidates(LightScan(scan_, false, true), StartSource::kLoops, refined, best.misfit.patient_mm);
-  if (!mirrored.empty()) result_.mirror_ratio = mirrored.front().misfit.patient_mm / best.misfit.patient_mm;
+  if (!mirrored.empty() && mirrored.front().usable())
+    result_.mirror_ratio = mirrored.front().misfit.patient_mm / best.misfit.patient_mm;
   if (good) return false;
   const auto fits_better = [&](const std::vector<PoseCandidate>& others) {
     return !others.empty() &&
@@ -389,16 +438,19 @@ void CoarseSearch::judge_runner_up(const std::vector<PoseCandidate>& proper) {
 }
 
 CoarseAlignment CoarseSearch::from_nothing() {
-  const std::vector<PoseCandidate> found = all_candidates();
+  std::vector<PoseCandidate> found = all_candidates();
   if (found.empty() || !found.front().usable()) {
     refuse_no_start();
     return result_;
   }
-  const PoseCandidate& best = found.front();
-  take(best);
+  take(found.front());
   if (refuse_wrong_hand(found)) return result_;
-  if (!fits(found, kFitsCapRatio) && !fits_where_seen(best)) {  // then every pose is about as bad as another
-    refuse_no_fit(best);
+  if (!fits(found, kFitsCapRatio) && !fits_where_seen(found.front())) {
+    found = all_sharpened(std::move(found));
+    take(found.front());
+  }
+  if (!fits_at_last(found)) {  // then every pose is about as bad as another
+    refuse_no_fit(found.front());
     return result_;
   }
   judge_runner_up(found);

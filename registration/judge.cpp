@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "acquisition/geometry/rigid_fit.hpp"
 #include "registration/seams.hpp"
 
 namespace arris {
@@ -14,6 +15,7 @@ constexpr double kSeamMm = 2.5,
                  kSeamEdgeLimits = 3.0;    // how far segments may disagree: bending, and the edge limit
 constexpr double kAcrossEdgeLimits = 2.0;  // an edge that seems to lie this far off may be the scan's grain
 constexpr double kImpossibleStrainRatio = 0.05;
+constexpr double kMovedStepMm = 5.0;
 constexpr double kResidualMm = 0.15, kResidualSigmas = 5.0;  // of the height beside the edge
 
 /// What two segments may disagree by at their cut, and an edge may lie off the middle between two rows along
@@ -123,6 +125,26 @@ void judge_strain(Registration& result) {
                 "triangles in the drawing, and whether it is this part",
                 100.0 * std::abs(result.face_strain_ratio),
                 result.face_strain_ratio > 0.0 ? "longer" : "shorter");
+  result.refusals.emplace_back(text);
+}
+
+void judge_moved(const CadModel& cad, const PoseWatch& watch, Registration& result) {
+  std::vector<Eigen::Vector3d> drawn_mm, carried_mm;
+  for (std::size_t c = 0; c < result.contours.size(); ++c)
+    for (double s_mm = 0.0; s_mm < cad.contours[c].length_mm(); s_mm += kMovedStepMm) {
+      drawn_mm.push_back(cad.contours[c].point_mm(s_mm));
+      carried_mm.push_back(result.contours[c].motion.at(s_mm) * drawn_mm.back());
+    }
+  const RigidFit nearest = fit_rigid(drawn_mm, carried_mm);
+  if (!nearest.usable()) return;
+  const double worse = watch.times_worse(nearest.to_from);
+  if (worse <= kAstrayRatio) return;
+  char text[240];
+  std::snprintf(text, sizeof text,
+                "the contours were moved along the part to where the whole scan fits %.1f times worse than "
+                "where it was found (at most %.2f): stray points or gaps led the fit astray; scan the rims "
+                "again",
+                worse, kAstrayRatio);
   result.refusals.emplace_back(text);
 }
 

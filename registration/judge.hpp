@@ -1,5 +1,6 @@
 #pragma once
 
+#include "registration/pose_watch.hpp"
 #include "registration/registration.hpp"
 
 namespace arris {
@@ -20,6 +21,10 @@ void judge_residuals(const CadModel& cad, const ScanModel& scan, Registration& r
 
 /// A contour that comes out so much longer or shorter than drawn as no part on a fixture is.
 void judge_strain(Registration& result);
+
+/// A method bends a part and does not move it: the rigid motion nearest to where it carries the contours must
+/// fit the whole scan about as well as the pose that was found.
+void judge_moved(const CadModel& cad, const PoseWatch& watch, Registration& result);
 
 /// What a projection leaves beyond its limit, on the surface and in it. Across the edge it is also allowed
 /// what a scan of this density cannot show.

@@ -136,10 +136,9 @@ std::vector<double> PoseScore::surface2(const LightScan& scan, const RigidMotion
 
 /// Mean over the drawing's other contours that the scan covers: squared distance, median along the contour,
 /// from the scan's edge. A second hole in the wrong place gives a wrong pose away.
-double PoseScore::other_contours2(const LightScan& scan, const RigidMotion& scan_from_cad) const {
+PoseScore::Others PoseScore::other_contours(const LightScan& scan, const RigidMotion& scan_from_cad) const {
   const double cap2 = cap_mm_ * cap_mm_;
-  double sum = 0.0;
-  int counted = 0;
+  Others others;
   for (const std::vector<Eigen::Vector3d>& places_mm : others_mm_) {
     std::vector<double> off2;
     for (const Eigen::Vector3d& p : places_mm) {
@@ -149,10 +148,11 @@ double PoseScore::other_contours2(const LightScan& scan, const RigidMotion& scan
       off2.push_back(nearest.index < 0 ? cap2 : std::min(cap2, beyond2(nearest.distance2_mm2, scan)));
     }
     if (double(off2.size()) < kCoveredRatio * double(places_mm.size())) continue;
-    sum += median_of(std::move(off2));
-    ++counted;
+    others.off2_mm2 += median_of(std::move(off2));
+    ++others.counted;
   }
-  return counted == 0 ? 0.0 : sum / counted;
+  if (others.counted > 0) others.off2_mm2 /= others.counted;
+  return others;
 }
 
 /// Whether a loop of the scan may be another hole of the CAD: it runs around no material, as the border of
@@ -215,9 +215,9 @@ PoseMisfit PoseScore::misfit(const LightScan& scan, const RigidMotion& scan_from
                              const std::vector<Place>& places) const {
   const RigidMotion cad_from_scan = scan_from_cad.inverse();
   std::vector<double> surface = surface2(scan, cad_from_scan);
-  if (surface.size() < kFewestOnSurface) return {cap_mm_, cap_mm_, cap_mm_, cap_mm_, 0.0, 0.0};
+  if (surface.size() < kFewestOnSurface) return {cap_mm_, cap_mm_, cap_mm_, cap_mm_};
   const double shown2 = std::pow(std::max(kShownRatio * cap_mm_, kShownSpacings * scan.model.spacing_mm), 2);
-  PoseMisfit misfit{0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  PoseMisfit misfit{0.0, 0.0, 0.0, 0.0};
   const double share = 1.0 / static_cast<double>(cad_.contours.size());
   for (std::size_t c = 0; c < cad_.contours.size(); ++c) {  // one by one: a small one counts as a large one
     std::vector<double> along, telling;
@@ -233,8 +233,11 @@ PoseMisfit PoseScore::misfit(const LightScan& scan, const RigidMotion& scan_from
     misfit.middle_mm += share * trimmed_mean(along, kMiddleKept);
     misfit.strict_mm += share * trimmed_mean(along, kStrictKept);
   }
-  const double rest = trimmed_mean(surface, kSurfaceKept) + other_contours2(scan, scan_from_cad) +
-                      stray_holes2(scan, cad_from_scan);
+  const Others others = other_contours(scan, scan_from_cad);
+  misfit.others_mm = std::sqrt(others.off2_mm2);
+  misfit.others = others.counted;
+  const double rest =
+      trimmed_mean(surface, kSurfaceKept) + others.off2_mm2 + stray_holes2(scan, cad_from_scan);
   misfit.seen_mm = std::sqrt(misfit.seen_mm + rest);
   misfit.patient_mm = std::sqrt(misfit.patient_mm + rest);
   misfit.middle_mm = std::sqrt(misfit.middle_mm + rest);

@@ -15,6 +15,8 @@ struct PoseMisfit {
   double seen_mm = 1e300;      ///< patient, of the places alone at which the scan tells anything
   double shown_ratio = 0.0;    ///< of the contours' samples: an edge of the scan is near, not only the cap
   double against_ratio = 0.0;  ///< of them: the scan's face goes on where the drawing ends
+  double others_mm = 0.0;      ///< off the drawing's other contours that the scan covers, beyond a spacing
+  int others = 0;              ///< how many those are
 };
 
 /// Scores poses of one drawing. What counts: the followed contours on the scan's edge; scan points near them
@@ -56,7 +58,12 @@ class PoseScore {
   [[nodiscard]] std::vector<Place> edges(const LightScan& scan, const RigidMotion& scan_from_cad) const;
   [[nodiscard]] std::vector<double> surface2(const LightScan& scan, const RigidMotion& cad_from_scan) const;
   [[nodiscard]] double hidden2(const LightScan& scan) const;
-  [[nodiscard]] double other_contours2(const LightScan& scan, const RigidMotion& scan_from_cad) const;
+  /// Mean square over the drawing's other contours that the scan covers, and how many.
+  struct Others {
+    double off2_mm2 = 0.0;
+    int counted = 0;
+  };
+  [[nodiscard]] Others other_contours(const LightScan& scan, const RigidMotion& scan_from_cad) const;
   [[nodiscard]] double stray_holes2(const LightScan& scan, const RigidMotion& cad_from_scan) const;
   [[nodiscard]] bool may_be_other_hole(const Contour& loop) const;
 

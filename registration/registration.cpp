@@ -158,6 +158,7 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   }
   if (result.coarse.flipped_normals) flip(scan);
   scan.side = SideKnown::kYes;
+  const PoseWatch watch(posed, scan, options.coarse.band_mm, result.coarse.score_mm);
   const double near_mm =
       std::min(kLoopReachRatio * options.coarse.band_mm,
                kLoopReachScores * result.coarse.score_mm + kLoopReachSpacings * scan.spacing_mm);
@@ -167,7 +168,7 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   if (!result.refusals.empty()) return result;
   if (cut)
     drop_edges_at(cad.contours, result.coarse.scan_from_cad, options.surface.stock_mm + kBesideStockMm, scan);
-  result.contours = rigid_stage(posed, scan, options, result);
+  result.contours = rigid_stage(posed, scan, options, watch, result);
   if (!result.rigid.usable()) {
     result.refusals.push_back(result.rigid.reason);
     return result;
@@ -202,7 +203,10 @@ Registration register_part(const CadModel& cad, ScanModel& scan, const Registrat
   judge_coverage(cad, options, result);
   if (options.method == RegistrationMethod::kSubdivision) judge_seams(cad, result);
   if (options.method == RegistrationMethod::kProjection) judge_projection(cad, options.projection, result);
-  if (options.method != RegistrationMethod::kRigid) judge_residuals(cad, scan, result);
+  if (options.method != RegistrationMethod::kRigid) {
+    judge_residuals(cad, scan, result);
+    judge_moved(cad, watch, result);
+  }
   return result;
 }
 

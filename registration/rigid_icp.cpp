@@ -75,9 +75,9 @@ struct Round {
 
 class PointToPlane {
  public:
-  PointToPlane(const CadModel& cad, const ScanModel& scan, const RigidIcpOptions& options,
-               const RigidMotion& start)
-      : cad_(cad), scan_(scan), options_(options), cad_from_scan_(start.inverse()) {
+  PointToPlane(const CadModel& cad, const ScanModel& scan, std::span<const Eigen::Vector3d> edge_mm,
+               const RigidIcpOptions& options, const RigidMotion& start)
+      : cad_(cad), scan_(scan), edge_mm_(edge_mm), options_(options), cad_from_scan_(start.inverse()) {
     sample_ = band_sample(cad, scan, cad_from_scan_, options);
     scale_mm_ = options.start_scale_mm;
     for (const Curve& curve : cad.contours)
@@ -119,7 +119,7 @@ class PointToPlane {
  private:
   void find_partners() {
     surface_.resize(sample_.size());
-    edges_.resize(scan_.edge_mm.size());
+    edges_.resize(edge_mm_.size());
     const double reach_mm = 3.0 * scale_mm_ + scan_.spacing_mm;
     parallel_for(sample_.size(), kChunk, options_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
@@ -128,7 +128,7 @@ class PointToPlane {
     });
     parallel_for(edges_.size(), kChunk, options_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        edges_[i] = pair_edge(cad_, cad_from_scan_ * scan_.edge_mm[i], reach_mm, edges_[i]);
+        edges_[i] = pair_edge(cad_, cad_from_scan_ * edge_mm_[i], reach_mm, edges_[i]);
     });
   }
 
@@ -153,7 +153,7 @@ class PointToPlane {
       if (e.contour < 0) continue;
       const double size2 = e.across_mm * e.across_mm + e.normal_mm * e.normal_mm;
       const double w = weight(size2);
-      const Eigen::Vector3d x = cad_from_scan_ * scan_.edge_mm[i] - pivot_;
+      const Eigen::Vector3d x = cad_from_scan_ * edge_mm_[i] - pivot_;
       round.edge.add(x, e.across, e.across_mm, w);
       round.edge.add(x, e.normal, e.normal_mm, w);
       sizes.push_back(std::sqrt(size2));
@@ -204,7 +204,7 @@ class PointToPlane {
       const EdgePair& e = edges_[i];
       if (e.contour < 0) continue;
       const double w = weight(e.across_mm * e.across_mm + e.normal_mm * e.normal_mm);
-      const Eigen::Vector3d x = cad_from_scan_ * scan_.edge_mm[i] - pivot_;
+      const Eigen::Vector3d x = cad_from_scan_ * edge_mm_[i] - pivot_;
       of(e).add(x, e.across, e.across_mm, w);
       of(e).add(x, e.normal, e.normal_mm, w);
     }
@@ -275,6 +275,7 @@ class PointToPlane {
 
   const CadModel& cad_;
   const ScanModel& scan_;
+  std::span<const Eigen::Vector3d> edge_mm_;
   const RigidIcpOptions& options_;
   RigidMotion cad_from_scan_;
   std::vector<RigidMotion> past_;  // of the last rounds
@@ -282,7 +283,7 @@ class PointToPlane {
   Eigen::Vector3d pivot_ = Eigen::Vector3d::Zero();
   std::vector<std::size_t> sample_;
   std::vector<Residual> surface_;  // of sample_
-  std::vector<EdgePair> edges_;    // of scan_.edge_mm
+  std::vector<EdgePair> edges_;    // of edge_mm_
   double scale_mm_ = 0.0, floor_mm_ = 0.0;
 };
 
@@ -353,8 +354,14 @@ RigidIcpResult icp_point_to_point(std::span<const Eigen::Vector3d> model_mm, con
 
 RigidIcpResult icp_point_to_plane(const CadModel& cad, const ScanModel& scan,
                                   const RigidMotion& start_scan_from_cad, const RigidIcpOptions& options) {
+  return icp_point_to_plane(cad, scan, scan.edge_mm, start_scan_from_cad, options);
+}
+
+RigidIcpResult icp_point_to_plane(const CadModel& cad, const ScanModel& scan,
+                                  std::span<const Eigen::Vector3d> edge_mm,
+                                  const RigidMotion& start_scan_from_cad, const RigidIcpOptions& options) {
   options.check();
-  return PointToPlane(cad, scan, options, start_scan_from_cad).run();
+  return PointToPlane(cad, scan, edge_mm, options, start_scan_from_cad).run();
 }
 
 }  // namespace arris

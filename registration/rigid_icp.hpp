@@ -71,5 +71,10 @@ struct Determined {
 [[nodiscard]] RigidIcpResult icp_point_to_plane(const CadModel& cad, const ScanModel& scan,
                                                 const RigidMotion& start_scan_from_cad,
                                                 const RigidIcpOptions& options);
+/// The same with other edge points than the scan's.
+[[nodiscard]] RigidIcpResult icp_point_to_plane(const CadModel& cad, const ScanModel& scan,
+                                                std::span<const Eigen::Vector3d> edge_mm,
+                                                const RigidMotion& start_scan_from_cad,
+                                                const RigidIcpOptions& options);
 
 }  // namespace arris

@@ -3,43 +3,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "registration/support_fit.hpp"
+
 namespace arris {
 namespace {
 
-constexpr double kStartLooseness = 8.0;
-// A rigid motion leaves the bending: with a dense scan's reach and noise, points of the bent stretches were
-// no part of the surface, and a third of the edge was not seen.
-constexpr double kStartHeightReachMm = 10.0;
-constexpr double kStartGateMm = 0.2;
 constexpr int kSurfacePoints = 500;  // the surface counts as 100 points, however many there are
-
-/// Looser splines and wider gates: relative to the rigid motion they carry the whole deformation.
-EdgeFitOptions for_rigid_start(EdgeFitOptions options) {
-  options.bend_across_per_mm *= kStartLooseness;
-  options.bend_normal_per_mm *= kStartLooseness;
-  options.tilt_change_rad *= kStartLooseness;
-  options.gate_floor_mm = kStartGateMm;
-  options.height_reach_mm = kStartHeightReachMm;
-  return options;
-}
-
-ContourMotion rigid_motion(const Curve& curve, const RigidMotion& scan_from_cad) {
-  SegmentFit fit;
-  fit.scan_from_cad = scan_from_cad;
-  SubdivisionOptions whole;
-  whole.segment_length_max_mm = 10.0 * curve.length_mm();
-  whole.corner_radius_max_mm = 0.0;
-  const Subdivision subdivision(curve, whole);
-  return {curve, subdivision, std::vector<SegmentFit>(subdivision.segments().size(), fit)};
-}
-
-/// The edge by support relative to one rigid motion.
-std::vector<ContourResult> edges_from_rigid(const CadModel& cad, const ScanModel& scan,
-                                            const RigidMotion& rigid, const EdgeFitOptions& options) {
-  std::vector<ContourMotion> motions;
-  for (const Curve& curve : cad.contours) motions.push_back(rigid_motion(curve, rigid));
-  return with_edges(cad, scan, std::move(motions), for_rigid_start(options));
-}
+constexpr int kSupportRounds = 2;    // from the pose as found, where extracted points led astray
 
 /// What the edge fit itself does not know of the edge across, smooth along it, moves the pose as a whole: the
 /// misfit that is left does not show it. Pose = inverse * sum(rows) * coefficients, so their covariance
@@ -66,24 +36,46 @@ void add_edge_covariance(const CadModel& cad, const std::vector<ContourResult>& 
   }
 }
 
+/// The best, by the watch, of what the edge by support makes of the pose found, in turn; where that leads
+/// astray as well the pose stays where it was found. Never the pose of `astray`.
+SupportFit by_support_alone(const CadModel& cad, const ScanModel& scan, const RigidMotion& found,
+                            const EdgeFitOptions& edge, const RigidIcpOptions& icp, const PoseWatch& watch,
+                            SupportFit astray) {
+  SupportFit last = std::move(astray), best;
+  double least = kAstrayRatio;
+  RigidMotion start = found;
+  for (int round = 0; round < kSupportRounds; ++round) {
+    SupportFit fit = fit_to_support(cad, scan, start, edge, icp);
+    if (!fit.rigid.usable()) break;
+    start = fit.rigid.scan_from_cad;
+    const double worse = watch.times_worse(start);
+    if (worse <= least) best = fit;
+    least = std::min(least, worse);
+    last = std::move(fit);
+  }
+  if (!best.edges.empty()) return best;
+  last.rigid.scan_from_cad = found;
+  return last;
+}
+
 }  // namespace
 
-std::vector<ContourResult> rigid_stage(const CadModel& cad, ScanModel& scan,
-                                       const RegistrationOptions& options, Registration& result) {
+std::vector<ContourResult> rigid_stage(const CadModel& cad, const ScanModel& scan,
+                                       const RegistrationOptions& options, const PoseWatch& watch,
+                                       Registration& result) {
+  const RigidMotion& found = result.coarse.scan_from_cad;
   RigidIcpOptions icp = options.rigid;
   icp.surface_points = std::min(icp.surface_points, kSurfacePoints);
   icp.start_scale_mm = std::max(3.0 * result.coarse.score_mm, 4.0 * scan.spacing_mm);
-  result.rigid = icp_point_to_plane(cad, scan, result.coarse.scan_from_cad, icp);
+  result.rigid = icp_point_to_plane(cad, scan, found, icp);
   if (!result.rigid.usable()) return {};
-  std::vector<ContourResult> edges = edges_from_rigid(cad, scan, result.rigid.scan_from_cad, options.edge);
-  std::vector<Eigen::Vector3d> extracted = std::exchange(scan.edge_mm, sharpened(cad, scan, edges).points_mm);
-  icp.start_scale_mm = 4.0 * scan.spacing_mm;
   icp.with_covariance = true;
-  RigidIcpResult refined = icp_point_to_plane(cad, scan, result.rigid.scan_from_cad, icp);
-  scan.edge_mm = std::move(extracted);
-  if (!refined.usable()) return edges;
-  add_edge_covariance(cad, edges, refined);
-  result.rigid = std::move(refined);
+  SupportFit fit = fit_to_support(cad, scan, result.rigid.scan_from_cad, options.edge, icp);
+  if (fit.rigid.usable() && watch.times_worse(fit.rigid.scan_from_cad) > kAstrayRatio)
+    fit = by_support_alone(cad, scan, found, options.edge, icp, watch, std::move(fit));
+  if (!fit.rigid.usable()) return std::move(fit.edges);
+  add_edge_covariance(cad, fit.edges, fit.rigid);
+  result.rigid = std::move(fit.rigid);
   if (options.method == RegistrationMethod::kSurface) return {};  // it finds its own, relative to its field
   return edges_from_rigid(cad, scan, result.rigid.scan_from_cad, options.edge);
 }
