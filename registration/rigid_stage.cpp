@@ -36,22 +36,26 @@ void add_edge_covariance(const CadModel& cad, const std::vector<ContourResult>& 
   }
 }
 
-/// The best, by the watch, of what the edge by support makes of the pose found, in turn; where that leads
-/// astray as well the pose stays where it was found. Never the pose of `astray`.
-SupportFit by_support_alone(const CadModel& cad, const ScanModel& scan, const RigidMotion& found,
-                            const EdgeFitOptions& edge, const RigidIcpOptions& icp, const PoseWatch& watch,
-                            SupportFit astray) {
-  SupportFit last = std::move(astray), best;
+/// The best, by the watch, of a fit that extracted points led and of those that the edge by support makes of
+/// the pose found, in turn; where all are led astray the pose stays where it was found.
+SupportFit best_by_watch(const CadModel& cad, const ScanModel& scan, const RigidMotion& found,
+                         const EdgeFitOptions& edge, const RigidIcpOptions& icp, const PoseWatch& watch,
+                         SupportFit led) {
+  SupportFit best, last;
   double least = kAstrayRatio;
+  const auto offer = [&](SupportFit fit) {
+    const double worse = watch.times_worse(fit.rigid.scan_from_cad);
+    if (worse <= least) best = fit;
+    least = std::min(least, worse);
+    last = std::move(fit);
+  };
+  offer(std::move(led));
   RigidMotion start = found;
   for (int round = 0; round < kSupportRounds; ++round) {
     SupportFit fit = fit_to_support(cad, scan, start, edge, icp);
     if (!fit.rigid.usable()) break;
     start = fit.rigid.scan_from_cad;
-    const double worse = watch.times_worse(start);
-    if (worse <= least) best = fit;
-    least = std::min(least, worse);
-    last = std::move(fit);
+    offer(std::move(fit));
   }
   if (!best.edges.empty()) return best;
   last.rigid.scan_from_cad = found;
@@ -71,9 +75,10 @@ std::vector<ContourResult> rigid_stage(const CadModel& cad, const ScanModel& sca
   if (!result.rigid.usable()) return {};
   icp.with_covariance = true;
   SupportFit fit = fit_to_support(cad, scan, result.rigid.scan_from_cad, options.edge, icp);
-  if (fit.rigid.usable() && watch.times_worse(fit.rigid.scan_from_cad) > kAstrayRatio)
-    fit = by_support_alone(cad, scan, found, options.edge, icp, watch, std::move(fit));
   if (!fit.rigid.usable()) return std::move(fit.edges);
+  const double worse = watch.times_worse(fit.rigid.scan_from_cad);
+  if (worse > kAstrayRatio || (worse > 1.0 && watch.times_worse(result.rigid.scan_from_cad) > kAstrayRatio))
+    fit = best_by_watch(cad, scan, found, options.edge, icp, watch, std::move(fit));
   add_edge_covariance(cad, fit.edges, fit.rigid);
   result.rigid = std::move(fit.rigid);
   if (options.method == RegistrationMethod::kSurface) return {};  // it finds its own, relative to its field
