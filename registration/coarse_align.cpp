@@ -277,11 +277,12 @@ PoseCandidate CoarseSearch::sharpened(PoseCandidate pose) {
   RigidIcpOptions icp;
   icp.surface_points = kSharpeningPoints;
   icp.band_mm = options_.band_mm;
-  icp.threads = options_.threads;
+  EdgeFitOptions edge;
+  edge.threads = icp.threads = options_.threads;
   const LightScan& scan = light(pose.flip);
   RigidMotion start = pose.scan_from_cad;
   for (int round = 0; round < kSharpeningRounds; ++round) {
-    const RigidIcpResult fit = fit_to_support(cad_, scan_, start, {}, icp).rigid;
+    const RigidIcpResult fit = fit_to_support(cad_, scan_, start, edge, icp).rigid;
     if (!fit.usable()) break;
     start = fit.scan_from_cad;
     const PoseMisfit misfit = search_.score().of(scan, start);
