@@ -1,20 +1,17 @@
 #include "registration/surface_field.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "registration/carried_contour.hpp"
+#include "registration/shape_about.hpp"
 
 namespace arris {
 namespace {
 
 constexpr double kSlideStepMm = 10.0;
-constexpr double kTurnSpacings = 0.5;  // of the nodes: radius of the ring that an axis turns with
-constexpr int kRingPoints = 6;
-constexpr double kFlatRatio = 1e-3;  // a ring narrower than this turns nothing
 
 /// Nearest accepted contour; -1 when there is none.
 int nearest_contour(const CadModel& cad, const Eigen::Vector3d& p_mm, CurveFoot& foot) {
@@ -65,35 +62,7 @@ MappedPoint SurfaceField::map(const Eigen::Vector3d& p_cad_mm) const {
 }
 
 Eigen::Matrix3d SurfaceField::turn_about(const Eigen::Vector3d& foot_mm, const BasisRow& row) const {
-  const double radius_mm = kTurnSpacings * fit_.basis->spacing_mm();
-  std::vector<Eigen::Vector3d> nominal_mm, carried_mm;
-  Eigen::Vector3d nominal_mean = Eigen::Vector3d::Zero(), carried_mean = Eigen::Vector3d::Zero();
-  const auto add = [&](const Eigen::Vector3d& p_mm, const BasisRow& at) {
-    nominal_mm.push_back(p_mm);
-    carried_mm.push_back(p_mm + at.combine(BasisRow::kValue, fit_.shift_mm));
-    nominal_mean += nominal_mm.back();
-    carried_mean += carried_mm.back();
-  };
-  add(foot_mm, row);
-  for (int k = 0; k < kRingPoints; ++k) {
-    const double angle_rad = 2.0 * std::numbers::pi * k / kRingPoints;
-    const Eigen::Vector3d direction = std::cos(angle_rad) * row.t1 + std::sin(angle_rad) * row.t2;
-    const SurfacePoint near = cad_.surface.closest(foot_mm + radius_mm * direction, radius_mm);
-    if (near.triangle < 0) continue;
-    const BasisRow at = fit_.basis->row(near.foot_mm, cad_.smooth_normal(near));
-    if (at.usable()) add(near.foot_mm, at);
-  }
-  nominal_mean /= static_cast<double>(nominal_mm.size());
-  carried_mean /= static_cast<double>(nominal_mm.size());
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (std::size_t k = 0; k < nominal_mm.size(); ++k)
-    sum += (carried_mm[k] - carried_mean) * (nominal_mm[k] - nominal_mean).transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  if (svd.singularValues()[1] < kFlatRatio * radius_mm * radius_mm)
-    return local_shape(row, fit_.shift_mm).rotation(row);
-  Eigen::Matrix3d turn = svd.matrixU();
-  if ((turn * svd.matrixV().transpose()).determinant() < 0.0) turn.col(2) = -turn.col(2);
-  return turn * svd.matrixV().transpose();
+  return shape_about(cad_, *fit_.basis, foot_mm, row, fit_.shift_mm).rotation(row);
 }
 
 double SurfaceField::sd_along_mm(const BasisRow& row, const Eigen::Vector3d& direction, int offset) const {
@@ -114,8 +83,8 @@ double SurfaceField::sd_along_mm(const BasisRow& row, const Eigen::Vector3d& dir
 
 double SurfaceField::sd_tilt_rad(const BasisRow& row, const Eigen::Vector3d& inward,
                                  const Eigen::Vector3d& normal) const {
-  // The field's own slope across the contour, known worse than the ring's chord: at a free edge the axis is
-  // off by what bends within the ring as well, of which the chord's covariance knows nothing.
+  // The basis' own slope across the contour, known worse than the rings' plane: at a free edge the axis is
+  // off by what bends within the rings as well, of which the plane's covariance knows nothing.
   BasisRow slope = row;
   for (BasisRow::Weights& w : slope.weight)
     w[BasisRow::kValue] = row.t1.dot(inward) * w[BasisRow::kD1] + row.t2.dot(inward) * w[BasisRow::kD2];

@@ -40,9 +40,7 @@ class SurfaceField final : public DeformationField {
   [[nodiscard]] double sd_along_mm(const BasisRow& row, const Eigen::Vector3d& direction, int offset) const;
   /// Beyond the covariance: height that the nodes about this place do not follow; mm^2.
   [[nodiscard]] double unfollowed_mm2(const BasisRow& row) const;
-  /// How the surface about a place turns: the rotation that carries a ring about it best, half a node spacing
-  /// wide or as far as the material goes. The field's own slopes are worst at a free edge, where tools work:
-  /// axes there were off three to five times as far by them.
+  /// How the surface about a place turns.
   [[nodiscard]] Eigen::Matrix3d turn_about(const Eigen::Vector3d& foot_mm, const BasisRow& row) const;
   [[nodiscard]] double sd_tilt_rad(const BasisRow& row, const Eigen::Vector3d& inward,
                                    const Eigen::Vector3d& normal) const;

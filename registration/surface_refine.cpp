@@ -33,7 +33,7 @@ constexpr double kLeastSigmaMm = 0.02;  // the drawing's own facets
 constexpr double kSettledMm = 1e-3, kSettledEdgeLimits = 0.01;  // moves of a round that no longer matter
 constexpr double kUnfollowedMm = 0.008;  // height of a bent surface that nodes 30 mm apart do not follow
 constexpr double kFinerFactor = 1.5, kShapeCellRatio = 0.67;               // of the node spacing
-constexpr double kWorthMm = 0.004, kWorthSigmas = 1.0, kWorthRatio = 0.5;  // of a shape left, to follow it
+constexpr double kWorthMm = 0.002, kWorthSigmas = 1.0, kWorthRatio = 0.5;  // of a shape left, to follow it
 constexpr double kStiffStrainRatio = 1e-5, kStiffBendPerMm = 1e-6;  // of a part that stays as it is drawn
 constexpr double kRigidMm = 0.015, kRigidSigmas = 0.3, kMostRigidSigmas = 1.3;
 constexpr double kUnknownThicknessWiden = 2.0;                 // the mid-surface's strain is then not known
