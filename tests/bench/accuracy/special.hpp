@@ -26,6 +26,9 @@ struct SpecialSetup {
 /// seeds without walls and with the path on the scanned face.
 [[nodiscard]] std::vector<GoalRow> face_rows(const SpecialSetup& setup);
 
+/// The bracket's usual scans by an estimator that knows what no program can: the least error that they allow.
+[[nodiscard]] std::vector<GoalRow> bound_rows(const SpecialSetup& setup);
+
 /// The scans of the parts 10 m away from the origin, in files of double, against where they were.
 [[nodiscard]] std::vector<GoalRow> far_rows(const SpecialSetup& setup);
 
