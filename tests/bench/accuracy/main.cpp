@@ -45,8 +45,8 @@ struct Arguments {
 /// Rows that are no scans of the parts as they are, by the word of --only.
 using SpecialRows = std::vector<GoalRow> (*)(const SpecialSetup&);
 std::vector<std::pair<std::string, SpecialRows>> special_rows() {
-  return {
-      {"cut", cut_rows}, {"size", size_rows}, {"faces", face_rows}, {"far", far_rows}, {"bound", bound_rows}};
+  return {{"cut", cut_rows}, {"size", size_rows},   {"faces", face_rows},
+          {"far", far_rows}, {"bound", bound_rows}, {"time", time_rows}};
 }
 
 /// A misspelt word would measure nothing.

@@ -32,4 +32,7 @@ struct SpecialSetup {
 /// The scans of the parts 10 m away from the origin, in files of double, against where they were.
 [[nodiscard]] std::vector<GoalRow> far_rows(const SpecialSetup& setup);
 
+/// From points in memory to the corrected path by the surface field, against the clock.
+[[nodiscard]] std::vector<GoalRow> time_rows(const SpecialSetup& setup);
+
 }  // namespace arris::bench
