@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 namespace arris::bench {
@@ -31,6 +32,16 @@ std::string notes_list(const std::vector<GoalRow>& rows) {
 
 std::string text_of(const MeanMax& error) {
   return fmt::format("{:.3f} / {:.3f} mm", error.mean_mm, error.max_mm);
+}
+
+MeanMax medians(const std::vector<MeanMax>& accepted, std::size_t scans) {
+  const auto middle = [&](double MeanMax::*member) {
+    std::vector<double> values(scans, std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; i < accepted.size(); ++i) values[i] = accepted[i].*member;
+    std::sort(values.begin(), values.end());
+    return 0.5 * (values[(scans - 1) / 2] + values[scans / 2]);
+  };
+  return {middle(&MeanMax::mean_mm), middle(&MeanMax::max_mm)};
 }
 
 void judge(GoalRow& row, const std::vector<MeanMax>& accepted, std::size_t refused, const MeanMax& limit) {

@@ -31,6 +31,8 @@ struct MeanMax {
 };
 /// "0.012 / 0.034 mm".
 [[nodiscard]] std::string text_of(const MeanMax& error);
+/// The middle of the mean and of the peak errors over all scans, of which refused ones are worse than any.
+[[nodiscard]] MeanMax medians(const std::vector<MeanMax>& accepted, std::size_t scans);
 /// Errors of the accepted scans of a row against one limit, the refused ones missing it: fills in reached,
 /// worst, counts and met (the mean over the scans within the limit, and none refused).
 void judge(GoalRow& row, const std::vector<MeanMax>& accepted, std::size_t refused, const MeanMax& limit);

@@ -85,13 +85,6 @@ GoalRow rigid_row(const CaseResult& result) {
   return row;
 }
 
-/// The middle one of all seeds; a refused one is worse than any.
-double median(std::vector<double> values, std::size_t all) {
-  values.resize(all, std::numeric_limits<double>::infinity());
-  std::sort(values.begin(), values.end());
-  return 0.5 * (values[(all - 1) / 2] + values[all / 2]);
-}
-
 GoalRow median_row(const CaseResult& result) {
   GoalRow row;
   row.what = "median over the scans, " + result.scan;
@@ -99,12 +92,7 @@ GoalRow median_row(const CaseResult& result) {
   row.goal = text_of(kBracketMedian);
   const std::vector<MeanMax> errors = accepted_errors(result);
   judge(row, errors, result.seeds.size() - errors.size(), kBracketMedian);
-  std::vector<double> means_mm, peaks_mm;
-  for (const MeanMax& error : errors) {
-    means_mm.push_back(error.mean_mm);
-    peaks_mm.push_back(error.max_mm);
-  }
-  const MeanMax middle{median(means_mm, row.scans), median(peaks_mm, row.scans)};
+  const MeanMax middle = medians(errors, row.scans);
   row.reached = text_of(middle);
   row.met = middle.within(kBracketMedian);
   return row;

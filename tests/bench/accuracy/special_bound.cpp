@@ -138,11 +138,6 @@ class EdgeBound {
   Eigen::VectorXd depths_mm_;  // of the point in the material
 };
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
-}
-
 }  // namespace
 
 std::vector<GoalRow> bound_rows(const SpecialSetup& setup) {
@@ -150,7 +145,6 @@ std::vector<GoalRow> bound_rows(const SpecialSetup& setup) {
   const BenchCase usual = bench_cases().front();
   EdgeBound bound(part.truth.edge());
   std::vector<MeanMax> errors;
-  std::vector<double> means_mm, peaks_mm;
   double edge_limit_mm = 0.0;
   for (int seed = 1; seed <= setup.seeds; ++seed) {
     const synthetic::SyntheticScan scan = sample_scan(part.fe, usual.scan, static_cast<std::uint64_t>(seed));
@@ -158,8 +152,6 @@ std::vector<GoalRow> bound_rows(const SpecialSetup& setup) {
     std::vector<Eigen::Vector3d> points_mm;
     for (const Eigen::Vector3d& p : scan.points_mm) points_mm.push_back(cad_from_scan * p);
     errors.push_back(bound.error_mm(points_mm, scan.edge_limit_mm(), static_cast<std::uint64_t>(seed)));
-    means_mm.push_back(errors.back().mean_mm);
-    peaks_mm.push_back(errors.back().max_mm);
     edge_limit_mm += scan.edge_limit_mm() / setup.seeds;
   }
   const MeanMax goal_mm{kGoalEdgeLimits.mean_mm * edge_limit_mm, kGoalEdgeLimits.max_mm * edge_limit_mm};
@@ -180,7 +172,7 @@ std::vector<GoalRow> bound_rows(const SpecialSetup& setup) {
   middle.part = mean.part;
   middle.goal = text_of(kMedianGoalMm);
   judge(middle, errors, 0, kMedianGoalMm);
-  const MeanMax median_mm{median(means_mm), median(peaks_mm)};
+  const MeanMax median_mm = medians(errors, errors.size());
   middle.reached = text_of(median_mm);
   middle.met = median_mm.within(kMedianGoalMm);
   return {mean, middle};
