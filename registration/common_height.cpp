@@ -7,10 +7,12 @@
 
 namespace arris {
 
-CommonHeight::CommonHeight(const std::vector<SurfacePair>& pairs, double cell_mm, double gate_mm) {
+CommonHeight::CommonHeight(const std::vector<SurfacePair>& pairs, double cell_mm, double gate_mm,
+                           double most_spacing_mm) {
   std::vector<std::pair<std::array<int, 3>, const SurfacePair*>> in_cells;
   for (const SurfacePair& pair : pairs) {
-    if (!pair.on_face || std::abs(pair.residual_mm) > gate_mm) continue;
+    if (!pair.on_face || std::abs(pair.residual_mm) > gate_mm || pair.row.spacing_mm > most_spacing_mm)
+      continue;
     const Eigen::Array3i cell = (pair.foot_mm / cell_mm).array().floor().cast<int>();
     in_cells.push_back({{cell.x(), cell.y(), cell.z()}, &pair});
   }
@@ -63,6 +65,13 @@ std::vector<double> CommonHeight::excess_mm2(std::size_t nodes, double known_mm2
     excess[j] = std::max(0.0, (sum[j] - chance) / count[j] - known_mm2);
   }
   return excess;
+}
+
+double shape_left_mm(const std::vector<SurfacePair>& pairs, double cell_mm, double gate_mm,
+                     double most_spacing_mm) {
+  const double wide_mm2 = CommonHeight(pairs, cell_mm, gate_mm, most_spacing_mm).mean_mm2(),
+               narrow_mm2 = CommonHeight(pairs, 0.5 * cell_mm, gate_mm, most_spacing_mm).mean_mm2();
+  return std::sqrt(std::max(0.0, (4.0 * wide_mm2 - narrow_mm2) / 3.0));
 }
 
 }  // namespace arris

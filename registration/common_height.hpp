@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "registration/surface_pairs.hpp"
@@ -12,8 +13,10 @@ namespace arris {
 /// means, less what their scatter explains.
 class CommonHeight {
  public:
-  /// Pairs off by more than gate_mm take no part. Cost O(n log n).
-  CommonHeight(const std::vector<SurfacePair>& pairs, double cell_mm, double gate_mm);
+  /// Pairs off by more than gate_mm, or where nodes are more than most_spacing_mm apart, take no part. Cost
+  /// O(n log n).
+  CommonHeight(const std::vector<SurfacePair>& pairs, double cell_mm, double gate_mm,
+               double most_spacing_mm = std::numeric_limits<double>::max());
 
   /// Mean square over the pairs.
   [[nodiscard]] double mean_mm2() const;
@@ -28,5 +31,10 @@ class CommonHeight {
   std::vector<Patch> patches_;
   double scatter_mm2_ = 0.0;  // of a pair about its patch's mean
 };
+
+/// Height of a shape that the field does not follow, in cells of cell_mm. Noise that is alike for neighbours
+/// falls with the area it is averaged over, a shape does not.
+[[nodiscard]] double shape_left_mm(const std::vector<SurfacePair>& pairs, double cell_mm, double gate_mm,
+                                   double most_spacing_mm);
 
 }  // namespace arris

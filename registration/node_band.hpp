@@ -29,11 +29,12 @@ class NodeBand {
   std::size_t pairs_ = 0;
 };
 
-/// Order in which points closer than reach_mm to each other get numbers close to each other: breadth first
-/// from an outermost one, each part of the cloud by itself. O(n^2).
+/// Order in which points that are neighbours get numbers close to each other: breadth first from an outermost
+/// one, each part of the cloud by itself. Neighbours are closer than their mean reach. O(n^2).
 [[nodiscard]] std::vector<std::size_t> numbered_along(const std::vector<Eigen::Vector3d>& points_mm,
-                                                      double reach_mm);
-/// The band of points that meet when closer than reach_mm.
-[[nodiscard]] NodeBand band_of(const std::vector<Eigen::Vector3d>& points_mm, double reach_mm);
+                                                      const std::vector<double>& reach_mm);
+/// The band of points that meet when closer than both their reaches together.
+[[nodiscard]] NodeBand band_of(const std::vector<Eigen::Vector3d>& points_mm,
+                               const std::vector<double>& reach_mm);
 
 }  // namespace arris

@@ -28,7 +28,7 @@ struct PlaneSums {
 LocalShape shape_about(const CadModel& cad, const SurfaceBasis& basis, const Eigen::Vector3d& foot_mm,
                        const BasisRow& row, const std::vector<Eigen::Vector3d>& shift_mm) {
   LocalShape shape = local_shape(row, shift_mm);
-  const double spacing_mm = basis.spacing_mm();
+  const double spacing_mm = row.spacing_mm;
   PlaneSums sums;
   sums.add(0.0, 0.0, shape.shift_mm);
   for (const double ring : kRingSpacings)
@@ -49,6 +49,21 @@ LocalShape shape_about(const CadModel& cad, const SurfaceBasis& basis, const Eig
   shape.f2 = row.t2 + plane.row(2).transpose();
   shape.normal = shape.f1.cross(shape.f2).normalized();
   return shape;
+}
+
+std::vector<double> edge_slopes(const CadModel& cad, const SurfaceBasis& basis,
+                                const std::vector<std::vector<ContourStation>>& contours,
+                                const std::vector<Eigen::Vector3d>& shift_mm) {
+  std::vector<double> slopes;
+  for (const std::vector<ContourStation>& stations : contours)
+    for (const ContourStation& at : stations) {
+      if (!at.row.usable()) continue;
+      const LocalShape shape = shape_about(cad, basis, at.point_mm, at.row, shift_mm);
+      const Eigen::Vector3d inward =
+          at.inward.dot(at.row.t1) * shape.f1 + at.inward.dot(at.row.t2) * shape.f2;
+      slopes.push_back(at.row.normal.dot(inward));
+    }
+  return slopes;
 }
 
 }  // namespace arris

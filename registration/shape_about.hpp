@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
+#include "registration/carried_contour.hpp"
 #include "registration/scene.hpp"
 #include "registration/surface_basis.hpp"
 #include "registration/surface_shape.hpp"
@@ -20,5 +22,10 @@ namespace arris {
 [[nodiscard]] LocalShape shape_about(const CadModel& cad, const SurfaceBasis& basis,
                                      const Eigen::Vector3d& foot_mm, const BasisRow& row,
                                      const std::vector<Eigen::Vector3d>& shift_mm);
+
+/// Slope of the deformed surface against the nominal one across each contour, one a station; rad.
+[[nodiscard]] std::vector<double> edge_slopes(const CadModel& cad, const SurfaceBasis& basis,
+                                              const std::vector<std::vector<ContourStation>>& contours,
+                                              const std::vector<Eigen::Vector3d>& shift_mm);
 
 }  // namespace arris

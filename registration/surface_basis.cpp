@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "acquisition/types/frames.hpp"
 
@@ -24,8 +26,14 @@ SurfaceNodes in_order(const SurfaceNodes& nodes, const std::vector<std::size_t>&
   for (const std::size_t i : order) {
     ordered.points_mm.push_back(nodes.points_mm[i]);
     ordered.normals.push_back(nodes.normals[i]);
+    ordered.spacing_mm.push_back(nodes.spacing_mm[i]);
   }
   return ordered;
+}
+
+std::vector<double> scaled(std::vector<double> values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
 }
 
 /// Wendland's C2 function; 1 at 0, 0 from q = 1 on.
@@ -37,18 +45,19 @@ double wendland_c2(double q) {
 
 }  // namespace
 
-SurfaceBasis::SurfaceBasis(SurfaceNodes nodes, double spacing_mm)
-    : nodes_(in_order(nodes, numbered_along(nodes.points_mm, kNextSpacings * spacing_mm))),
-      band_(std::make_shared<NodeBand>(band_of(nodes_.points_mm, 2.0 * kRadiusSpacings * spacing_mm))),
-      spacing_mm_(spacing_mm),
-      radius_mm_(kRadiusSpacings * spacing_mm) {
+SurfaceBasis::SurfaceBasis(const SurfaceNodes& nodes)
+    : nodes_(in_order(nodes, numbered_along(nodes.points_mm, scaled(nodes.spacing_mm, kNextSpacings)))),
+      band_(
+          std::make_shared<NodeBand>(band_of(nodes_.points_mm, scaled(nodes_.spacing_mm, kRadiusSpacings)))) {
   if (nodes_.points_mm.empty()) return;
   Eigen::Vector3d high_mm = low_mm_ = nodes_.points_mm.front();
   for (const Eigen::Vector3d& p : nodes_.points_mm) {
     low_mm_ = low_mm_.cwiseMin(p);
     high_mm = high_mm.cwiseMax(p);
   }
-  cell_mm_ = std::max(radius_mm_, (high_mm - low_mm_).maxCoeff() / kMostCellsASide);
+  const auto [least, most] = std::minmax_element(nodes_.spacing_mm.begin(), nodes_.spacing_mm.end());
+  least_spacing_mm_ = *least;
+  cell_mm_ = std::max(kRadiusSpacings * *most, (high_mm - low_mm_).maxCoeff() / kMostCellsASide);
   count_ = ((high_mm - low_mm_) / cell_mm_).array().floor().cast<int>() + 1;
   const auto place = [&](const Eigen::Vector3d& p) {
     const Eigen::Array3i at = ((p - low_mm_) / cell_mm_).array().floor().cast<int>();
@@ -77,26 +86,37 @@ BasisRow SurfaceBasis::row(const Eigen::Vector3d& p_cad_mm, const Eigen::Vector3
   const Eigen::Array3i at = ((p_cad_mm - low_mm_) / cell_mm_).array().floor().cast<int>();
   row.node.reserve(kUsualNodes);
   const Eigen::Array3i low = (at - 1).max(0), high = (at + 1).min(count_ - 1);
+  std::vector<std::pair<std::int32_t, double>> around;  // nodes of the same sheet, and how far they are
+  double spacing_mm = std::numeric_limits<double>::max(), widest_mm = 0.0;
   for (int z = low.z(); z <= high.z(); ++z)
     for (int y = low.y(); y <= high.y(); ++y)
       for (int x = low.x(); x <= high.x(); ++x)
         for (std::uint32_t k = start_[cell_of(x, y, z)]; k < start_[cell_of(x, y, z) + 1]; ++k) {
           const auto j = static_cast<std::size_t>(order_[k]);
-          if ((nodes_.points_mm[j] - p_cad_mm).norm() < radius_mm_ &&
-              nodes_.normals[j].dot(normal) >= kCosSameSheet)
-            row.node.push_back(order_[k]);
+          if (nodes_.normals[j].dot(normal) < kCosSameSheet) continue;
+          const double apart_mm = (nodes_.points_mm[j] - p_cad_mm).norm();
+          spacing_mm = std::min(spacing_mm, nodes_.spacing_mm[j] + NodeSpacing::kGrowth * apart_mm);
+          widest_mm = std::max(widest_mm, nodes_.spacing_mm[j]);
+          if (apart_mm < kRadiusSpacings * nodes_.spacing_mm[j]) around.emplace_back(order_[k], apart_mm);
         }
+  spacing_mm = std::min(spacing_mm, widest_mm);
+  for (const auto& [j, apart_mm] : around)
+    if (apart_mm < kRadiusSpacings * spacing_mm) row.node.push_back(j);
   std::sort(row.node.begin(), row.node.end());
   std::vector<double> weights;
+  const double unit_mm = kRadiusSpacings * spacing_mm;
+  row.spacing_mm = spacing_mm;
   weights.reserve(row.node.size());
   row.weight.reserve(row.node.size());
   for (const std::int32_t j : row.node) {
     const Eigen::Vector3d apart = nodes_.points_mm[static_cast<std::size_t>(j)] - p_cad_mm;
-    const double u = apart.dot(row.t1) / radius_mm_, v = apart.dot(row.t2) / radius_mm_;
+    const double u = apart.dot(row.t1) / unit_mm, v = apart.dot(row.t2) / unit_mm;
+    const double reach_mm =
+        kRadiusSpacings * std::min(spacing_mm, nodes_.spacing_mm[static_cast<std::size_t>(j)]);
     BasisRow::Weights p;
     p << 1.0, u, v, 0.5 * u * u, u * v, 0.5 * v * v;
     row.weight.push_back(p);
-    weights.push_back(wendland_c2(apart.norm() / radius_mm_));
+    weights.push_back(wendland_c2(apart.norm() / reach_mm));
   }
   Eigen::Matrix<double, 6, 6> moment = Eigen::Matrix<double, 6, 6>::Zero();
   double total = 0.0;
@@ -112,7 +132,7 @@ BasisRow SurfaceBasis::row(const Eigen::Vector3d& p_cad_mm, const Eigen::Vector3
     row.weight.clear();
     return row;
   }
-  const double slope = 1.0 / radius_mm_, bend = slope * slope;
+  const double slope = 1.0 / unit_mm, bend = slope * slope;
   BasisRow::Weights units;
   units << 1.0, slope, slope, bend, bend, bend;
   Eigen::Matrix<double, 6, 6> inverse = solver.solve(Eigen::Matrix<double, 6, 6>::Identity());

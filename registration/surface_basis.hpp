@@ -18,6 +18,7 @@ struct BasisRow {
   using Weights = Eigen::Matrix<double, 6, 1>;
   Eigen::Vector3d t1 = Eigen::Vector3d::UnitX(), t2 = Eigen::Vector3d::UnitY();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  double spacing_mm = 0.0;         ///< of the nodes about x
   std::vector<std::int32_t> node;  ///< ascending
   std::vector<Weights> weight;     ///< one a node; 1/mm and 1/mm^2 for slopes and second derivatives
 
@@ -39,9 +40,10 @@ struct BasisRow {
 class SurfaceBasis {
  public:
   /// The nodes are numbered anew, along the part.
-  SurfaceBasis(SurfaceNodes nodes, double spacing_mm);
+  explicit SurfaceBasis(const SurfaceNodes& nodes);
   [[nodiscard]] std::size_t size() const { return nodes_.points_mm.size(); }
-  [[nodiscard]] double spacing_mm() const { return spacing_mm_; }
+  /// The least there is: beside the contours.
+  [[nodiscard]] double spacing_mm() const { return least_spacing_mm_; }
   [[nodiscard]] const SurfaceNodes& nodes() const { return nodes_; }
   /// Nodes that share rows.
   [[nodiscard]] const std::shared_ptr<const NodeBand>& band() const { return band_; }
@@ -54,7 +56,7 @@ class SurfaceBasis {
 
   SurfaceNodes nodes_;
   std::shared_ptr<const NodeBand> band_;
-  double spacing_mm_, radius_mm_;
+  double least_spacing_mm_ = 0.0;
   double cell_mm_ = 1.0;  // of the grid that finds nodes
   Eigen::Vector3d low_mm_ = Eigen::Vector3d::Zero();
   Eigen::Array3i count_ = Eigen::Array3i::Ones();

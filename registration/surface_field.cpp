@@ -12,6 +12,7 @@ namespace arris {
 namespace {
 
 constexpr double kSlideStepMm = 10.0;
+constexpr double kTurnsApartSds = 1.2;  // of the axis, for each radian that two turns of it differ by
 
 /// Nearest accepted contour; -1 when there is none.
 int nearest_contour(const CadModel& cad, const Eigen::Vector3d& p_mm, CurveFoot& foot) {
@@ -52,10 +53,14 @@ MappedPoint SurfaceField::map(const Eigen::Vector3d& p_cad_mm) const {
                   sd_along_mm(row, turn * tangent, -1)};
   if (follow) mapped.sd_mm.y() = std::hypot(mapped.sd_mm.y(), fit_.scanner_sd_mm);
   mapped.sd_axis_rad = sd_tilt_rad(row, inward, shape.normal);
-  const double more_mm2 = unfollowed_mm2(row), wave_mm = 2.0 * fit_.basis->spacing_mm();
+  const double more_mm2 = unfollowed_mm2(row), wave_mm = 2.0 * row.spacing_mm;
   mapped.sd_mm.x() = std::hypot(mapped.sd_mm.x(), std::sqrt(more_mm2));
   mapped.sd_axis_rad = std::hypot(
       mapped.sd_axis_rad, 2.0 * std::numbers::pi / wave_mm * std::sqrt(more_mm2 + fit_.unfollowed_mean_mm2));
+  // How far two ways to take the turn from the same nodes differ says how far nodes so far apart can be off
+  // (Zienkiewicz and Zhu, Int. J. Numer. Meth. Eng. 24, 1987).
+  const double apart_rad = (turn * row.normal - shape.normal).dot(turn * inward);
+  mapped.sd_axis_rad = std::hypot(mapped.sd_axis_rad, kTurnsApartSds * apart_rad);
   mapped.from_data = seen_.empty() || seen_[static_cast<std::size_t>(contour)].at(beside.arc_mm);
   mapped.in_domain = true;
   return mapped;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "acquisition/types/error.hpp"
 
@@ -13,6 +14,7 @@ namespace {
 constexpr double kCosSameSheet = 0.2;    // a node serves cells whose normal turns less than this
 constexpr double kCoverRatio = 0.75;     // of the spacing: how far a cell may be from its node
 constexpr double kInvertedShare = 0.05;  // of a cube's area: less faces the other way by mistake
+constexpr double kCubeRatio = 1.5;       // most that a cube of the priors is wider than asked
 constexpr std::size_t kMostCells = 1000000;
 
 double to_contours_mm(const CadModel& cad, const Eigen::Vector3d& p_mm) {
@@ -59,7 +61,8 @@ class CellMaker {
     const double b = (j / 2 + third) / cuts, c = (i + third) / cuts, a = 1.0 - b - c;
     SurfaceCell cell;
     cell.centre_mm = a * vertex(t[0]) + b * vertex(t[1]) + c * vertex(t[2]);
-    if (band_mm_ >= 0.0 && to_contours_mm(cad_, cell.centre_mm) > band_mm_) return;
+    cell.to_contours_mm = to_contours_mm(cad_, cell.centre_mm);
+    if (band_mm_ >= 0.0 && cell.to_contours_mm > band_mm_) return;
     SurfacePoint place;
     place.triangle = static_cast<std::int32_t>(triangle);
     place.barycentric = {a, b, c};
@@ -78,6 +81,7 @@ void add_contour_nodes(const Curve& curve, double spacing_mm, SurfaceNodes& node
     const double s_mm = curve.length_mm() * i / count;
     nodes.points_mm.push_back(curve.point_mm(s_mm));
     nodes.normals.push_back(curve.normal(s_mm));
+    nodes.spacing_mm.push_back(spacing_mm);
   }
 }
 
@@ -116,11 +120,15 @@ std::vector<SurfaceCell> band_cells(const CadModel& cad, double band_mm, double 
   return std::move(maker.cells);
 }
 
-std::vector<SurfaceCell> thinned(const std::vector<SurfaceCell>& cells, double cell_mm) {
-  std::map<std::array<std::array<int, 3>, 2>, std::vector<std::size_t>> cubes;  // place and side
+std::vector<SurfaceCell> thinned(const std::vector<SurfaceCell>& cells, const NodeSpacing& spacing,
+                                 double cell_ratio) {
+  // Cubes of a few sizes: each half of the next.
+  std::map<std::tuple<double, std::array<int, 3>, std::array<int, 3>>, std::vector<std::size_t>> cubes;
   for (std::size_t i = 0; i < cells.size(); ++i) {
+    double cell_mm = cell_ratio * spacing.far_mm;
+    while (cell_mm > kCubeRatio * cell_ratio * spacing.at(cells[i].to_contours_mm)) cell_mm *= 0.5;
     const Eigen::Array3i side = (cells[i].normal * 1.5).array().round().cast<int>();
-    cubes[{cube_of(cells[i].centre_mm, cell_mm), {side.x(), side.y(), side.z()}}].push_back(i);
+    cubes[{cell_mm, cube_of(cells[i].centre_mm, cell_mm), {side.x(), side.y(), side.z()}}].push_back(i);
   }
   std::vector<SurfaceCell> fewer;
   for (const auto& [cube, members] : cubes) {
@@ -143,23 +151,25 @@ std::vector<SurfaceCell> thinned(const std::vector<SurfaceCell>& cells, double c
 }
 
 SurfaceNodes place_nodes(const std::vector<const Curve*>& contours, const std::vector<SurfaceCell>& cells,
-                         double spacing_mm) {
+                         const NodeSpacing& spacing) {
   SurfaceNodes nodes;
-  for (const Curve* curve : contours) add_contour_nodes(*curve, spacing_mm, nodes);
-  std::vector<double> distance_mm(cells.size(), 1e300);
+  for (const Curve* curve : contours) add_contour_nodes(*curve, spacing.beside_mm, nodes);
+  std::vector<double> spacing_mm, apart(cells.size(), 1e300);  // in spacings, from the nearest node
+  for (const SurfaceCell& cell : cells) spacing_mm.push_back(spacing.at(cell.to_contours_mm));
   const auto serve = [&](const Eigen::Vector3d& p_mm, const Eigen::Vector3d& normal) {
     for (std::size_t i = 0; i < cells.size(); ++i)
       if (cells[i].normal.dot(normal) > kCosSameSheet)
-        distance_mm[i] = std::min(distance_mm[i], (cells[i].centre_mm - p_mm).norm());
+        apart[i] = std::min(apart[i], (cells[i].centre_mm - p_mm).norm() / spacing_mm[i]);
   };
   for (std::size_t i = 0; i < nodes.points_mm.size(); ++i) serve(nodes.points_mm[i], nodes.normals[i]);
   while (!cells.empty()) {
-    const auto farthest = std::max_element(distance_mm.begin(), distance_mm.end());
-    if (*farthest <= kCoverRatio * spacing_mm) break;
-    const SurfaceCell& cell = cells[static_cast<std::size_t>(farthest - distance_mm.begin())];
-    nodes.points_mm.push_back(cell.centre_mm);
-    nodes.normals.push_back(cell.normal);
-    serve(cell.centre_mm, cell.normal);
+    const auto farthest = std::max_element(apart.begin(), apart.end());
+    if (*farthest <= kCoverRatio) break;
+    const auto i = static_cast<std::size_t>(farthest - apart.begin());
+    nodes.points_mm.push_back(cells[i].centre_mm);
+    nodes.normals.push_back(cells[i].normal);
+    nodes.spacing_mm.push_back(spacing_mm[i]);
+    serve(cells[i].centre_mm, cells[i].normal);
   }
   return nodes;
 }

@@ -1,9 +1,8 @@
 #include "registration/surface_refine.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "acquisition/geometry/evenly_drawn.hpp"
@@ -11,7 +10,10 @@
 #include "acquisition/types/error.hpp"
 #include "registration/common_height.hpp"
 #include "registration/edge_strips.hpp"
+#include "registration/seen_elsewhere.hpp"
+#include "registration/shape_about.hpp"
 #include "registration/surface_factor.hpp"
+#include "registration/surface_ground.hpp"
 #include "registration/surface_pairs.hpp"
 
 namespace arris {
@@ -23,9 +25,6 @@ constexpr double kFollowedTaus = 0.3;  // a round that moves the edge by more ha
 constexpr int kMostHeld = 8;           // rounds at one tau
 constexpr int kStrayPasses = 5, kBurrPasses = 4;
 constexpr double kClaimsNearMm = 150.0;  // strays that hold one place of an edge together
-constexpr double kFineCellRatio = 0.4,
-                 kCellRatio = 0.6;  // of the node spacing: to place nodes; of the priors
-constexpr std::size_t kMostNodes = 400;
 constexpr std::size_t kFewestPointsANode = 8, kLevelFactor = 4;  // of the first rounds of a dense scan
 constexpr double kGaugeMm = 50.0;       // weak pull to the rigid start, for motions that nothing else holds
 constexpr double kProximalMm = 5.0;     // a round's moves along such motions stay small
@@ -34,20 +33,22 @@ constexpr double kSettledMm = 1e-3, kSettledEdgeLimits = 0.01;  // moves of a ro
 constexpr double kUnfollowedMm = 0.008;  // height of a bent surface that nodes 30 mm apart do not follow
 constexpr double kFinerFactor = 1.5, kShapeCellRatio = 0.67;               // of the node spacing
 constexpr double kWorthMm = 0.002, kWorthSigmas = 1.0, kWorthRatio = 0.5;  // of a shape left, to follow it
+constexpr double kLeastNodesRatio = 0.4;  // of the spacing asked for: no closer to turn edges
+constexpr double kSlopeSigmas = 2.0;      // of a node's height over its spacing: noise of a slope at an edge
+constexpr double kMostSlopeNoiseRad = 7e-4, kWorthSlopeRad = 9e-4, kWorthSlopeNoises = 2.3;
+constexpr double kBesideRatio = 1.2;  // of the least spacing: nodes beside contours
 constexpr double kStiffStrainRatio = 1e-5, kStiffBendPerMm = 1e-6;  // of a part that stays as it is drawn
 constexpr double kRigidMm = 0.015, kRigidSigmas = 0.3, kMostRigidSigmas = 1.3;
-constexpr double kUnknownThicknessWiden = 2.0;                 // the mid-surface's strain is then not known
-constexpr double kElsewhereMm = 12.0, kWorthSeenRatio = 0.13;  // of the edges' length
-constexpr int kElsewhereSteps = 6;
-constexpr std::size_t kFewBeyond = 2;
-constexpr double kBeliedSpacings = 2.0;
-constexpr int kMostAverages = 8;   // rounds of messages between points and edges
-constexpr std::size_t kParts = 2;  // chunks of a list: each needs a system of its own
+constexpr double kUnknownThicknessWiden = 2.0;  // the mid-surface's strain is then not known
+constexpr int kMostAverages = 8;                // rounds of messages between points and edges
+constexpr std::size_t kParts = 2;               // chunks of a list: each needs a system of its own
 
-double area_mm2_of(const std::vector<SurfaceCell>& cells) {
-  double area_mm2 = 0.0;
-  for (const SurfaceCell& cell : cells) area_mm2 += cell.area_mm2;
-  return area_mm2;
+/// Of two lists; 0 when they cannot be compared.
+double rms_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  if (a.size() != b.size() || a.empty()) return 0.0;
+  double sum2 = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum2 += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum2 / static_cast<double>(a.size()));
 }
 
 class SurfaceFitter {
@@ -60,7 +61,8 @@ class SurfaceFitter {
     if (prior_.thickness_mm <= 0.0) prior_.strain_ratio *= kUnknownThicknessWiden;
     for (const Curve& curve : options.role == ContourRole::kEdge ? cad.contours : cad.others)
       edges_.push_back(&curve);
-    make_basis(options.node_spacing_mm);
+    ground_ = even_ground(cad, band_mm(), options.node_spacing_mm);
+    fit_.basis = ground_.basis;
     const double reach_mm = options.band_mm + options.start_scale_mm + 3.0 * scan.spacing_mm;
     near_ =
         points_near(cad, scan, rigid, options.role == ContourRole::kCut ? -1.0 : reach_mm, options.threads);
@@ -87,13 +89,19 @@ class SurfaceFitter {
     for (int pass = 1; fit_.usable() && call_strays() && pass < kStrayPasses; ++pass) settle();
     if (fit_.usable()) {
       average_edges();
-      fit_.elsewhere_mm = seen_better_by_mm();
+      fit_.elsewhere_mm = seen_better_by_mm(*strips_, ground_.contours, fit_.shift_mm, scan_.spacing_mm,
+                                            [&](const auto& shift_mm) { lay_strips(shift_mm, false); });
       fit_.covariance += doubt_mm2_;
     }
     return std::move(fit_);
   }
 
  private:
+  /// Of the CAD about the contours that carries the field; -1: all of it.
+  [[nodiscard]] double band_mm() const {
+    return options_.role == ContourRole::kCut ? -1.0 : options_.band_mm;
+  }
+
   /// No deformation, and everything looked at coarsely.
   void start_over() {
     fit_.reason.clear();
@@ -213,77 +221,11 @@ class SurfaceFitter {
     fit_.covariance = SurfaceFactor(assemble()).inverse(options_.threads);
   }
 
-  /// Edges that seem missing may lie elsewhere: a fit that slid too far along a slot sees the slot's ends as
-  /// gaps, and nothing calls it back. How far the contours would have to move along the part, if at all, for
-  /// far more of them to be seen and no more material to lie beyond them. The last that is asked of the
-  /// strips: they are left where it looked.
-  [[nodiscard]] double seen_better_by_mm() {
-    double best_mm = 0.0;
-    lay_strips(fit_.shift_mm, false);
-    const double worth_mm = kWorthSeenRatio * strips_->length_mm();
-    if (strips_->length_mm() - strips_->seen_mm() < worth_mm) return best_mm;
-    const std::size_t beyond = strips_->points_beyond();
-    double most_mm = shown_mm(beyond) + worth_mm;
-    for (const Eigen::Vector3d& direction : along_contours())
-      for (int step = -kElsewhereSteps; step <= kElsewhereSteps; ++step) {
-        std::vector<Eigen::Vector3d> moved = fit_.shift_mm;
-        const double by_mm = kElsewhereMm / kElsewhereSteps * step;
-        for (Eigen::Vector3d& shift : moved) shift += by_mm * direction;
-        lay_strips(moved, false);
-        const std::size_t beyond_now = strips_->points_beyond();
-        const double shown_now_mm = shown_mm(beyond_now);
-        if (shown_now_mm <= most_mm || beyond_now > beyond + kFewBeyond) continue;
-        most_mm = shown_now_mm;
-        best_mm = std::abs(by_mm);
-      }
-    return best_mm;
-  }
-
-  /// Length of the edges that the scan shows; a point beyond one, where it seems to be seen, belies some of
-  /// it.
-  [[nodiscard]] double shown_mm(std::size_t beyond) const {
-    return strips_->seen_mm() - kBeliedSpacings * scan_.spacing_mm * static_cast<double>(beyond);
-  }
-
-  /// The two directions in which the contours extend most.
-  [[nodiscard]] std::array<Eigen::Vector3d, 2> along_contours() const {
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    double count = 0.0;
-    for (const std::vector<ContourStation>& stations : followed_)
-      for (const ContourStation& station : stations) {
-        mean += station.point_mm;
-        spread += station.point_mm * station.point_mm.transpose();
-        count += 1.0;
-      }
-    mean /= count;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread / count - mean * mean.transpose());
-    return {axes.eigenvectors().col(2), axes.eigenvectors().col(1)};
-  }
-
-  void make_basis(double spacing_mm) {
-    const double band_mm = options_.role == ContourRole::kCut ? -1.0 : options_.band_mm;
-    std::vector<SurfaceCell> cells = band_cells(cad_, band_mm, kFineCellRatio * spacing_mm);
-    spacing_mm = std::max(spacing_mm, std::sqrt(area_mm2_of(cells) / static_cast<double>(kMostNodes)));
-    std::vector<const Curve*> node_curves;
-    for (const Curve& curve : cad_.contours) node_curves.push_back(&curve);
-    if (options_.role == ContourRole::kCut)
-      for (const Curve& curve : cad_.others) node_curves.push_back(&curve);
-    auto basis = std::make_shared<SurfaceBasis>(place_nodes(node_curves, cells, spacing_mm), spacing_mm);
-    for (const SurfaceCell& cell : thinned(cells, kCellRatio * spacing_mm)) {
-      SheetCell sheet(cell, *basis);
-      if (sheet.usable()) sheet_.push_back(std::move(sheet));
-    }
-    fit_.basis = std::move(basis);
-    followed_.clear();
-    for (const Curve& curve : cad_.contours) followed_.push_back(contour_stations(curve, *fit_.basis, 5.0));
-  }
-
   /// The same field on other nodes.
-  void change_basis(double spacing_mm) {
+  void stand_on(SurfaceGround ground) {
     const SurfaceFit before = fit_;
-    sheet_.clear();
-    make_basis(spacing_mm);
+    ground_ = std::move(ground);
+    fit_.basis = ground_.basis;
     const SurfaceNodes& nodes = fit_.basis->nodes();
     fit_.shift_mm.clear();
     for (std::size_t j = 0; j < nodes.points_mm.size(); ++j)
@@ -293,43 +235,84 @@ class SurfaceFitter {
     (void)call_burrs();
   }
 
-  /// Height of the shape that the nodes do not follow. Noise that is alike for neighbours falls with the area
-  /// it is averaged over, a shape does not.
-  [[nodiscard]] double shape_left_mm(double cell_mm) const {
-    const double gate_mm = kGateSigmas * fit_.sigma_mm;
-    const double wide_mm2 = CommonHeight(pairs_, cell_mm, gate_mm).mean_mm2(),
-                 narrow_mm2 = CommonHeight(pairs_, 0.5 * cell_mm, gate_mm).mean_mm2();
-    return std::sqrt(std::max(0.0, (4.0 * wide_mm2 - narrow_mm2) / 3.0));
+  /// Nodes closer together beside the contours, as long as that is worth it. A part that stays rigid has no
+  /// shape to follow.
+  void choose_nodes() {
+    while (fit_.usable() && (followed_shape() || (bends() && turned_edges()))) {
+    }
+    if (fit_.usable()) weigh_unfollowed();
   }
 
-  /// Nodes closer together, as long as that follows a shape that was left.
-  void choose_nodes() {
-    for (;;) {
-      const double spacing_mm = fit_.basis->spacing_mm(), cell_mm = kShapeCellRatio * spacing_mm;
-      const double left_mm = shape_left_mm(cell_mm);
-      const auto nodes = static_cast<double>(fit_.basis->size()), pairs = static_cast<double>(fit_.pairs);
-      const double finer_nodes = kFinerFactor * kFinerFactor * nodes;
-      if (left_mm < std::max(kWorthMm, kWorthSigmas * fit_.sigma_mm * std::sqrt(nodes / pairs)) ||
-          finer_nodes > kMostNodes || pairs < kFewestPointsANode * finer_nodes)
-        break;
-      const SurfaceFit before = fit_;
-      change_basis(spacing_mm / kFinerFactor);
-      settle();
-      if (!fit_.usable()) return;
-      if (shape_left_mm(cell_mm) < kWorthRatio * left_mm) continue;
-      change_basis(spacing_mm);
-      fit_.shift_mm = before.shift_mm;
-      fit_.offset_mm = before.offset_mm;
-      settle();
-      break;
-    }
+  [[nodiscard]] bool bends() const { return prior_.bend_per_mm >= options_.prior.bend_per_mm; }
+  [[nodiscard]] double finer_mm() const { return fit_.basis->spacing_mm() / kFinerFactor; }
+  [[nodiscard]] bool enough_points_for(double spacing_mm) const {
+    return static_cast<double>(fit_.pairs) * spacing_mm * spacing_mm >= kFewestPointsANode * ground_.area_mm2;
+  }
+
+  /// True: nodes closer together follow a shape that was left, and stay.
+  bool followed_shape() {
+    const double cell_mm = kShapeCellRatio * fit_.basis->spacing_mm(), left_mm = shape_left_mm(cell_mm);
+    const double told_mm =
+        kWorthSigmas * fit_.sigma_mm *
+        std::sqrt(static_cast<double>(fit_.basis->size()) / static_cast<double>(fit_.pairs));
+    if (left_mm < std::max(kWorthMm, told_mm) || !enough_points_for(finer_mm())) return false;
+    return keep_finer_if([&] { return shape_left_mm(cell_mm) < kWorthRatio * left_mm; });
+  }
+
+  /// True: nodes closer together turn the edges by more than noise does, and stay. At a free edge, where
+  /// tools work, a part bends in ways that heights hardly show. Nodes follow what noise neighbours share as
+  /// well, so where that alone turns edges nothing is tried.
+  bool turned_edges() {
+    const double noise_rad = slope_noise_rad(finer_mm());
+    if (finer_mm() < kLeastNodesRatio * options_.node_spacing_mm || noise_rad > kMostSlopeNoiseRad)
+      return false;
+    const std::vector<double> before = edge_slopes(cad_, *fit_.basis, ground_.contours, fit_.shift_mm);
+    return keep_finer_if([&] {
+      const std::vector<double> after = edge_slopes(cad_, *fit_.basis, ground_.contours, fit_.shift_mm);
+      return rms_difference(before, after) > std::max(kWorthSlopeRad, kWorthSlopeNoises * noise_rad);
+    });
+  }
+
+  /// Of the slope that nodes so far apart have at an edge: from the points' own noise and from what
+  /// neighbours share beyond the field.
+  [[nodiscard]] double slope_noise_rad(double spacing_mm) const {
+    const CommonHeight common(pairs_, 0.5 * fit_.basis->spacing_mm(), kGateSigmas * fit_.sigma_mm);
+    const double points = static_cast<double>(fit_.pairs) * spacing_mm * spacing_mm / ground_.area_mm2;
+    return kSlopeSigmas / spacing_mm *
+           std::hypot(fit_.sigma_mm / std::sqrt(points), std::sqrt(common.mean_mm2()));
+  }
+
+  /// Settles on nodes closer together; goes back where that was not worth it. True: it was, or is no fit.
+  bool keep_finer_if(const std::function<bool()>& worth) {
+    SurfaceGround finer = graded_ground(cad_, band_mm(), finer_mm(), options_.node_spacing_mm);
+    if (finer.too_fine()) return false;
+    const SurfaceFit before = fit_;
+    SurfaceGround coarser = ground_;
+    stand_on(std::move(finer));
+    settle();
+    if (!fit_.usable() || worth()) return true;
+    stand_on(std::move(coarser));
+    fit_.shift_mm = before.shift_mm;
+    fit_.offset_mm = before.offset_mm;
+    settle();
+    return false;
+  }
+
+  /// Height of the shape that the nodes beside the contours do not follow.
+  [[nodiscard]] double shape_left_mm(double cell_mm) const {
+    return arris::shape_left_mm(pairs_, cell_mm, kGateSigmas * fit_.sigma_mm,
+                                kBesideRatio * fit_.basis->spacing_mm());
+  }
+
+  /// What the nodes do not follow counts against every point.
+  void weigh_unfollowed() {
     const double spacing_mm = fit_.basis->spacing_mm();
     const CommonHeight common(pairs_, 0.5 * spacing_mm, kGateSigmas * fit_.sigma_mm);
     unfollowed_mm_ = std::max(std::sqrt(common.mean_mm2()),
                               kUnfollowedMm * std::pow(spacing_mm / options_.node_spacing_mm, 2));
     fit_.unfollowed_mm2 = common.excess_mm2(fit_.shift_mm.size(), unfollowed_mm_ * unfollowed_mm_);
     fit_.unfollowed_mean_mm2 = unfollowed_mm_ * unfollowed_mm_;
-    if (prior_.bend_per_mm < options_.prior.bend_per_mm)  // a stiff field's covariance does not know of it
+    if (!bends())  // a stiff field's covariance does not know of it
       fit_.unfollowed_mm2.assign(fit_.shift_mm.size(), fit_.unfollowed_mean_mm2);
     settle();
   }
@@ -378,8 +361,8 @@ class SurfaceFitter {
           add_surface(pairs_, begin, end, sigma_mm, scale_mm_, part);
           strips_->add(begin, end, fit_.offset_mm, tau_mm_, stray_ratio, part);
         });
-    system += summed(sheet_.size(), [&](std::size_t begin, std::size_t end, SurfaceSystem& part) {
-      for (std::size_t i = begin; i < end; ++i) sheet_[i].add(fit_.shift_mm, prior_, part);
+    system += summed(ground_.sheet.size(), [&](std::size_t begin, std::size_t end, SurfaceSystem& part) {
+      for (std::size_t i = begin; i < end; ++i) ground_.sheet[i].add(fit_.shift_mm, prior_, part);
     });
     add_weak_priors(system);
     return system;
@@ -417,7 +400,7 @@ class SurfaceFitter {
 
   double moved_mm(const std::vector<Eigen::Vector3d>& moved) const {
     double sum2 = 0.0, count = 1e-9;
-    for (const std::vector<ContourStation>& stations : followed_)
+    for (const std::vector<ContourStation>& stations : ground_.contours)
       for (const ContourStation& station : stations) {
         Eigen::Vector3d d = station.row.combine(BasisRow::kValue, moved);
         d -= d.dot(station.tangent) * station.tangent;
@@ -436,10 +419,9 @@ class SurfaceFitter {
   const SurfaceOptions& options_;
   SheetPrior prior_;
   SurfaceFit fit_;
-  std::vector<SheetCell> sheet_;
+  SurfaceGround ground_;
   std::vector<const Curve*> edges_;
   std::optional<EdgeStrips> strips_;
-  std::vector<std::vector<ContourStation>> followed_;
   std::vector<std::size_t> near_, points_;  // scan points near the contours, and those that take part
   std::vector<SurfacePair> pairs_;
   Eigen::MatrixXd doubt_mm2_;  // covariance of what may be owed to strays

@@ -17,7 +17,7 @@ constexpr double kStripMm = 10.0, kReachMm = 20.0, kSpacingMm = 2.0, kTauMm = 0.
 struct Strip {
   synthetic::PlatePart part{synthetic::plate_with_rounded_rectangle()};
   CadModel cad = scenes::cad_of(part);
-  SurfaceBasis basis{place_nodes({&cad.contours[0]}, band_cells(cad, 40.0, 12.0), 30.0), 30.0};
+  SurfaceBasis basis{place_nodes({&cad.contours[0]}, band_cells(cad, 40.0, 12.0), 30.0)};
   std::vector<Eigen::Vector3d> still = std::vector<Eigen::Vector3d>(basis.size(), Eigen::Vector3d::Zero());
   EdgeStrips strips{{&cad.contours[0]}, basis, kStripMm, kSpacingMm, 0.0};
 

@@ -13,7 +13,7 @@ namespace {
 /// A flat plate with an opening and the field's nodes on it.
 struct Plate {
   CadModel cad = scenes::cad_of(synthetic::PlatePart(synthetic::plate_with_rounded_rectangle()));
-  SurfaceBasis basis{place_nodes({&cad.contours[0]}, band_cells(cad, 60.0, 12.0), 30.0), 30.0};
+  SurfaceBasis basis{place_nodes({&cad.contours[0]}, band_cells(cad, 60.0, 12.0), 30.0)};
 
   /// The shape of a field f at a place of the opening's edge (inside_mm = 0) or inside the material.
   LocalShape at(double arc_mm, double inside_mm,

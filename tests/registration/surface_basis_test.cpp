@@ -17,7 +17,8 @@ using synthetic::PlatePart;
 struct Plate {
   CadModel cad = scenes::cad_of(PlatePart(synthetic::plate_with_rounded_rectangle()));
   std::vector<SurfaceCell> cells = band_cells(cad, 60.0, 12.0);
-  SurfaceBasis basis{place_nodes({&cad.contours[0]}, cells, 30.0), 30.0};
+  NodeSpacing spacing{30.0};
+  SurfaceBasis basis{place_nodes({&cad.contours[0]}, cells, spacing)};
 
   std::vector<Eigen::Vector3d> at_nodes(const std::function<Eigen::Vector3d(double, double)>& f) const {
     std::vector<Eigen::Vector3d> values;
@@ -26,64 +27,101 @@ struct Plate {
   }
 };
 
+/// Nodes evenly spaced, and closer together beside the opening.
+const std::vector<NodeSpacing> kSpacings = {NodeSpacing(30.0), NodeSpacing(13.0, 30.0)};
+Plate plate_with(const NodeSpacing& spacing) {
+  Plate plate;
+  plate.cells = band_cells(plate.cad, 60.0, 0.4 * spacing.beside_mm);
+  plate.spacing = spacing;
+  plate.basis = SurfaceBasis(place_nodes({&plate.cad.contours[0]}, plate.cells, spacing));
+  return plate;
+}
+
 TEST(SurfaceNodes, CellsHoldTheBandsArea) {
   const PlatePart part(synthetic::plate_with_rounded_rectangle());
   const Plate plate;
   double area_mm2 = 0.0, fewer_mm2 = 0.0;
   for (const SurfaceCell& cell : plate.cells) area_mm2 += cell.area_mm2;
-  for (const SurfaceCell& cell : thinned(plate.cells, 20.0)) fewer_mm2 += cell.area_mm2;
+  for (const SurfaceCell& cell : thinned(plate.cells, 30.0, 0.67)) fewer_mm2 += cell.area_mm2;
   EXPECT_NEAR(area_mm2 / part.band_area_mm2(60.0), 1.0, 0.03);
   EXPECT_NEAR(fewer_mm2, area_mm2, 1e-6 * area_mm2);
-  EXPECT_LT(thinned(plate.cells, 20.0).size(), plate.cells.size());
+  EXPECT_LT(thinned(plate.cells, 30.0, 0.67).size(), plate.cells.size());
 }
 
 TEST(SurfaceNodes, EveryCellHasANodeNearAndNoneAreOnTopOfEachOther) {
-  const Plate plate;
-  for (const SurfaceCell& cell : plate.cells) {
-    double nearest_mm = 1e300;
-    for (const Eigen::Vector3d& p : plate.basis.nodes().points_mm)
-      nearest_mm = std::min(nearest_mm, (p - cell.centre_mm).norm());
-    EXPECT_LE(nearest_mm, 0.75 * 30.0 + 1e-9);
+  for (const NodeSpacing& spacing : kSpacings) {
+    const Plate plate = plate_with(spacing);
+    const std::vector<Eigen::Vector3d>& nodes = plate.basis.nodes().points_mm;
+    for (const SurfaceCell& cell : plate.cells) {
+      double nearest_mm = 1e300;
+      for (const Eigen::Vector3d& p : nodes) nearest_mm = std::min(nearest_mm, (p - cell.centre_mm).norm());
+      EXPECT_LE(nearest_mm, 0.75 * spacing.at(cell.to_contours_mm) + 1e-9);
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      for (std::size_t j = i + 1; j < nodes.size(); ++j)
+        EXPECT_GT((nodes[i] - nodes[j]).norm(), spacing.beside_mm / 6.0) << i << " " << j;
   }
-  const std::vector<Eigen::Vector3d>& nodes = plate.basis.nodes().points_mm;
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    for (std::size_t j = i + 1; j < nodes.size(); ++j)
-      EXPECT_GT((nodes[i] - nodes[j]).norm(), 5.0)
-          << nodes[i].transpose() << " / " << nodes[j].transpose() << " " << i << " " << j;
+}
+
+TEST(SurfaceNodes, AreFewWhereTheyMayBeFartherApart) {
+  const std::size_t all_close = plate_with(13.0).basis.size();
+  EXPECT_LT(3 * plate_with({13.0, 30.0}).basis.size(), 2 * all_close);
+  EXPECT_GT(plate_with({13.0, 30.0}).basis.size(), 2 * plate_with(30.0).basis.size());
 }
 
 TEST(SurfaceBasis, WeightsSumToOneAndReproduceWhatIsLinearAndQuadratic) {
-  const Plate plate;
   const auto f = [](double x, double y) {
     return Eigen::Vector3d(1.0, 0.2 * x - 0.1 * y, 1e-3 * x * x - 2e-3 * x * y + 5e-4 * y * y);
   };
-  const std::vector<Eigen::Vector3d> values = plate.at_nodes(f);
-  for (std::size_t i = 0; i < plate.cells.size(); i += 7) {
-    const Eigen::Vector3d& p = plate.cells[i].centre_mm;
-    const BasisRow row = plate.basis.row(p, Eigen::Vector3d::UnitZ());
-    ASSERT_TRUE(row.usable());
-    EXPECT_LT((row.combine(BasisRow::kValue, values) - f(p.x(), p.y())).norm(), 5e-3) << p.transpose();
-    EXPECT_NEAR(row.combine(BasisRow::kValue, values).x(), 1.0, 1e-12);
-    const Eigen::Vector3d slope = row.combine(BasisRow::kD1, values);
-    EXPECT_NEAR(slope.x(), 0.0, 1e-12);
-    EXPECT_NEAR(slope.y(), 0.2 * row.t1.x() - 0.1 * row.t1.y(), 1e-10);
+  for (const NodeSpacing& spacing : kSpacings) {
+    const Plate plate = plate_with(spacing);
+    const double most_mm = spacing.beside_mm < spacing.far_mm ? 0.02 : 5e-3;  // of a bow of 30 mm
+    const std::vector<Eigen::Vector3d> values = plate.at_nodes(f);
+    for (std::size_t i = 0; i < plate.cells.size(); i += 7) {
+      const Eigen::Vector3d& p = plate.cells[i].centre_mm;
+      const BasisRow row = plate.basis.row(p, Eigen::Vector3d::UnitZ());
+      ASSERT_TRUE(row.usable());
+      EXPECT_LT((row.combine(BasisRow::kValue, values) - f(p.x(), p.y())).norm(), most_mm) << p.transpose();
+      EXPECT_NEAR(row.combine(BasisRow::kValue, values).x(), 1.0, 1e-12);
+      const Eigen::Vector3d slope = row.combine(BasisRow::kD1, values);
+      EXPECT_NEAR(slope.x(), 0.0, 1e-12);
+      EXPECT_NEAR(slope.y(), 0.2 * row.t1.x() - 0.1 * row.t1.y(), 1e-10);
+    }
   }
 }
 
 TEST(SurfaceBasis, IsSmoothAcrossTheBand) {
-  const Plate plate;
-  const std::vector<Eigen::Vector3d> values = plate.at_nodes(
-      [](double x, double y) { return Eigen::Vector3d(std::sin(x / 40.0), std::cos(y / 50.0), 0); });
   const Eigen::Vector3d n = Eigen::Vector3d::UnitZ();
-  Eigen::Vector3d before = Eigen::Vector3d::Zero();
-  for (double x = -20.0; x < 20.0; x += 0.1) {  // along the edge of the opening, through node after node
-    const BasisRow row = plate.basis.row(plate.cad.contours[0].point_mm(200.0 + x), n);
-    ASSERT_TRUE(row.usable());
-    const Eigen::Vector3d here = row.combine(BasisRow::kValue, values);
-    if (x > -20.0) {
-      EXPECT_LT((here - before).norm(), 0.01);
+  for (const NodeSpacing& spacing : kSpacings) {
+    const Plate plate = plate_with(spacing);
+    const std::vector<Eigen::Vector3d> values = plate.at_nodes(
+        [](double x, double y) { return Eigen::Vector3d(std::sin(x / 40.0), std::cos(y / 50.0), 0); });
+    const Eigen::Vector3d edge_mm = plate.cad.contours[0].point_mm(200.0);
+    const Eigen::Vector3d along = plate.cad.contours[0].tangent(200.0), inward = plate.cad.inward(0, 200.0);
+    // A step of 0.1 mm changes these values by 0.0025; through node after node, along the edge and away from
+    // it.
+    for (const auto& [direction, from_mm] : {std::pair(along, -20.0), std::pair(inward, 0.0)}) {
+      Eigen::Vector3d before = Eigen::Vector3d::Zero();
+      for (double at_mm = from_mm; at_mm < from_mm + 55.0; at_mm += 0.1) {
+        const BasisRow row = plate.basis.row(edge_mm + at_mm * direction, n);
+        ASSERT_TRUE(row.usable());
+        const Eigen::Vector3d here = row.combine(BasisRow::kValue, values);
+        if (at_mm > from_mm) {
+          EXPECT_LT((here - before).norm(), 0.004) << at_mm;
+        }
+        before = here;
+      }
     }
-    before = here;
+  }
+}
+
+TEST(SurfaceBasis, NodesThatShareARowLieInTheBand) {
+  const Plate plate = plate_with({13.0, 30.0});
+  for (const SurfaceCell& cell : plate.cells) {
+    const BasisRow row = plate.basis.row(cell.centre_mm, Eigen::Vector3d::UnitZ());
+    ASSERT_TRUE(row.usable());
+    EXPECT_GE(static_cast<std::size_t>(row.node.front()),
+              plate.basis.band()->first(static_cast<std::size_t>(row.node.back())));
   }
 }
 

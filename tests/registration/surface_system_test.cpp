@@ -42,21 +42,27 @@ std::vector<Eigen::Vector3d> reordered(const std::vector<Eigen::Vector3d>& point
   return result;
 }
 
+std::vector<double> all_reach(const std::vector<Eigen::Vector3d>& points_mm, double reach_mm) {
+  return std::vector<double>(points_mm.size(), reach_mm);
+}
+
 TEST(NodeBand, HoldsAllThatAreNearAndIsNarrowWhateverTheOrderTheyCameIn) {
-  constexpr double kReachMm = 25.0;
   std::vector<Eigen::Vector3d> shuffled = ring(40);
   Random random(7);
   for (std::size_t i = shuffled.size() - 1; i > 0; --i)
     std::swap(shuffled[i], shuffled[static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(i)))]);
-  std::vector<std::size_t> order = numbered_along(shuffled, 16.0);
+  std::vector<std::size_t> order = numbered_along(shuffled, all_reach(shuffled, 16.0));
   const std::vector<Eigen::Vector3d> points_mm = reordered(shuffled, order);
   std::sort(order.begin(), order.end());
   for (std::size_t i = 0; i < order.size(); ++i) ASSERT_EQ(order[i], i);
-  const NodeBand band = band_of(points_mm, kReachMm);
+  std::vector<double> reach_mm;
+  for (std::size_t a = 0; a < points_mm.size(); ++a) reach_mm.push_back(a % 2 == 0 ? 10.0 : 12.5);
+  const NodeBand band = band_of(points_mm, reach_mm);
   std::size_t widest = 0;
   for (std::size_t a = 0; a < band.nodes(); ++a) {
     widest = std::max(widest, a - band.first(a));
-    for (std::size_t b = 0; b < band.first(a); ++b) EXPECT_GE((points_mm[a] - points_mm[b]).norm(), kReachMm);
+    for (std::size_t b = 0; b < band.first(a); ++b)
+      EXPECT_GE((points_mm[a] - points_mm[b]).norm(), reach_mm[a] + reach_mm[b]);
   }
   EXPECT_LE(widest, 24u);  // three abreast, both ways round, somewhat more than three rings: of 120
 }
@@ -68,7 +74,7 @@ struct Sum {
   Eigen::VectorXd gradient;
 
   explicit Sum(std::uint64_t seed)
-      : system(std::make_shared<NodeBand>(band_of(in_order(), 25.0)), 2),
+      : system(std::make_shared<NodeBand>(band_of(in_order(), all_reach(in_order(), 12.5))), 2),
         information(Eigen::MatrixXd::Zero(system.gradient.size(), system.gradient.size())),
         gradient(Eigen::VectorXd::Zero(system.gradient.size())) {
     Random random(seed);
@@ -89,7 +95,7 @@ struct Sum {
 
   static std::vector<Eigen::Vector3d> in_order() {
     const std::vector<Eigen::Vector3d> points_mm = ring(40);
-    return reordered(points_mm, numbered_along(points_mm, 16.0));
+    return reordered(points_mm, numbered_along(points_mm, all_reach(points_mm, 16.0)));
   }
   void expect(const Eigen::VectorXd& j, double slope, double curvature) {
     information += curvature * j * j.transpose();
@@ -213,8 +219,8 @@ struct SeenPlace {
 /// residuals by its own derivatives.
 TEST(SurfaceSystem, FindsTheFieldAndTheCovarianceThatCeresFinds) {
   const CadModel cad = scenes::cad_of(synthetic::PlatePart(synthetic::plate_with_rounded_rectangle()));
-  const std::vector<SurfaceCell> cells = thinned(band_cells(cad, 40.0, 16.0), 40.0);
-  const SurfaceBasis basis(place_nodes({&cad.contours[0]}, band_cells(cad, 40.0, 16.0), 40.0), 40.0);
+  const std::vector<SurfaceCell> cells = thinned(band_cells(cad, 40.0, 16.0), 40.0, 1.0);
+  const SurfaceBasis basis(place_nodes({&cad.contours[0]}, band_cells(cad, 40.0, 16.0), 40.0));
   SheetPrior prior;
   prior.thickness_mm = 3.0;
   std::vector<SheetCell> sheet;

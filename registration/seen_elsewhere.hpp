@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "registration/carried_contour.hpp"
+#include "registration/edge_strips.hpp"
+
+namespace arris {
+
+/// Edges that seem missing may lie elsewhere: a fit that slid too far along a slot sees the slot's ends as
+/// gaps, and nothing calls it back. How far the contours would have to move along the part, if at all, for
+/// far more of them to be seen and no more material to lie beyond them; 0: nowhere.
+///   shift_mm    of the nodes, as the fit ended
+///   spacing_mm  of the scan's points
+///   lay         lays the strips under other shifts, walls not counted; they are left where it looked last
+[[nodiscard]] double seen_better_by_mm(const EdgeStrips& strips,
+                                       const std::vector<std::vector<ContourStation>>& contours,
+                                       const std::vector<Eigen::Vector3d>& shift_mm, double spacing_mm,
+                                       const std::function<void(const std::vector<Eigen::Vector3d>&)>& lay);
+
+}  // namespace arris
