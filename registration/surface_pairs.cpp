@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/geometry/curve_order.hpp"
 #include "acquisition/geometry/median.hpp"
 #include "acquisition/geometry/parallel_for.hpp"
 #include "registration/normal_equations.hpp"
@@ -54,13 +55,22 @@ std::vector<std::size_t> points_near(const CadModel& cad, const ScanModel& scan,
       for (std::size_t i = begin; i < end; ++i) {
         const Eigen::Vector3d p_mm = cad_from_scan * scan.points_mm[i];
         for (const Curve& curve : cad.contours)
-          if (curve.nearest(p_mm).distance_mm < reach_mm) near[i] = 1;
+          if (curve.is_within(p_mm, reach_mm)) near[i] = 1;
       }
     });
   std::vector<std::size_t> points;
   for (std::size_t i = 0; i < near.size(); ++i)
     if (near[i]) points.push_back(i);
   return points;
+}
+
+std::vector<std::size_t> beside_each_other(const ScanModel& scan, const std::vector<std::size_t>& points,
+                                           int threads) {
+  std::vector<Eigen::Vector3f> places_mm;
+  for (const std::size_t i : points) places_mm.push_back(scan.points_mm[i].cast<float>());
+  std::vector<std::size_t> ordered;
+  for (const std::uint32_t k : curve_order(places_mm, threads)) ordered.push_back(points[k]);
+  return ordered;
 }
 
 void pair_surface(const CadModel& cad, const ScanModel& scan, const std::vector<std::size_t>& points,
@@ -80,6 +90,13 @@ void pair_surface(const CadModel& cad, const ScanModel& scan, const std::vector<
   });
 }
 
+void renew_rows(const SurfaceBasis& basis, int threads, std::vector<SurfacePair>& pairs) {
+  parallel_for(pairs.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (pairs[i].row.usable()) pairs[i].row = basis.row(pairs[i].foot_mm, pairs[i].row.normal);
+  });
+}
+
 double residual_sigma_mm(const std::vector<SurfacePair>& pairs, double scale_mm) {
   std::vector<double> sizes;
   for (const SurfacePair& pair : pairs)
@@ -91,6 +108,7 @@ double residual_sigma_mm(const std::vector<SurfacePair>& pairs, double scale_mm)
 void add_surface(const std::vector<SurfacePair>& pairs, std::size_t begin, std::size_t end, double sigma_mm,
                  double scale_mm, SurfaceSystem& system) {
   std::vector<double> shares;
+  AlongSums sums(*system.band, static_cast<std::size_t>(system.corner.size()));
   for (std::size_t i = begin; i < end; ++i) {
     const SurfacePair& pair = pairs[i];
     if (!pair.on_face) continue;
@@ -98,8 +116,9 @@ void add_surface(const std::vector<SurfacePair>& pairs, std::size_t begin, std::
     for (const BasisRow::Weights& w : pair.row.weight) shares.push_back(w[BasisRow::kValue]);
     const double weight =
         geman_mcclure_weight(pair.residual_mm * pair.residual_mm, scale_mm) / (sigma_mm * sigma_mm);
-    system.add_along(pair.row.node, shares, pair.normal, -weight * pair.residual_mm, weight);
+    sums.add(pair.row.node, shares, pair.normal, -weight * pair.residual_mm, weight);
   }
+  system += sums;
 }
 
 }  // namespace arris

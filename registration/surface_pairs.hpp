@@ -30,6 +30,10 @@ struct SurfacePair {
                                                    const RigidMotion& scan_from_cad, double reach_mm,
                                                    int threads);
 
+/// The same points, those that follow each other near each other, so that what they need is at hand.
+[[nodiscard]] std::vector<std::size_t> beside_each_other(const ScanModel& scan,
+                                                         const std::vector<std::size_t>& points, int threads);
+
 /// Renews the partner of every pair: the nominal surface point nearest to the scan point with the shift of
 /// its last partner taken off (a fixed point; exact once the shifts stand still), unless the point still lies
 /// above that partner's tangent plane within 0.1 mm of it. Normals within 60 degrees.
@@ -38,6 +42,9 @@ void pair_surface(const CadModel& cad, const ScanModel& scan, const std::vector<
                   const RigidMotion& scan_from_cad, const SurfaceBasis& basis,
                   const std::vector<Eigen::Vector3d>& shift_mm, double reach_mm, int threads,
                   std::vector<SurfacePair>& pairs);
+
+/// Rows of another basis at the partners that the pairs have.
+void renew_rows(const SurfaceBasis& basis, int threads, std::vector<SurfacePair>& pairs);
 
 /// Robust residual (scaled median) of the pairs on the face within 2 scale_mm; mm.
 [[nodiscard]] double residual_sigma_mm(const std::vector<SurfacePair>& pairs, double scale_mm);

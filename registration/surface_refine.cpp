@@ -145,6 +145,11 @@ class SurfaceFitter {
     points_.clear();
     pairs_.clear();
     for (const std::size_t i : evenly_drawn(near_.size(), near_.size() / one_of)) points_.push_back(near_[i]);
+    points_ = beside_each_other(scan_, points_, options_.threads);
+    lay_out_strips(one_of);
+  }
+
+  void lay_out_strips(std::size_t one_of) {
     const double spacing_mm = scan_.spacing_mm * std::sqrt(static_cast<double>(one_of));
     const double strip_mm = std::clamp(4.0 * spacing_mm, 3.0, options_.strip_mm);
     strips_.emplace(edges_, *fit_.basis, strip_mm, spacing_mm, options_.scanner.out_mm);
@@ -221,7 +226,7 @@ class SurfaceFitter {
     fit_.covariance = SurfaceFactor(assemble()).inverse(options_.threads);
   }
 
-  /// The same field on other nodes.
+  /// The same field on other nodes; all points take part already.
   void stand_on(SurfaceGround ground) {
     const SurfaceFit before = fit_;
     ground_ = std::move(ground);
@@ -231,7 +236,8 @@ class SurfaceFitter {
     for (std::size_t j = 0; j < nodes.points_mm.size(); ++j)
       fit_.shift_mm.push_back(
           before.basis->row(nodes.points_mm[j], nodes.normals[j]).combine(BasisRow::kValue, before.shift_mm));
-    take_points(1);
+    renew_rows(*fit_.basis, options_.threads, pairs_);
+    lay_out_strips(1);
     (void)call_burrs();
   }
 

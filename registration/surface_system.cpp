@@ -27,18 +27,6 @@ void SurfaceSystem::add(const Row& row, double slope, double curvature) {
         curvature * row.offset_derivative * row.direction[b].transpose();
 }
 
-void SurfaceSystem::add_along(const std::vector<std::int32_t>& node, const std::vector<double>& weight,
-                              const Eigen::Vector3d& direction, double slope, double curvature) {
-  const Eigen::Vector3d pull = slope * direction;
-  const Eigen::Matrix3d square = curvature * direction * direction.transpose();
-  for (std::size_t a = 0; a < node.size(); ++a) {
-    gradient.segment<3>(3 * node[a]) += weight[a] * pull;
-    const Eigen::Matrix3d left = weight[a] * square;
-    for (std::size_t b = 0; b <= a; ++b)
-      block(static_cast<std::size_t>(node[a]), static_cast<std::size_t>(node[b])) += weight[b] * left;
-  }
-}
-
 void SurfaceSystem::add(const std::vector<std::int32_t>& node,
                         const std::vector<Eigen::Matrix<double, 3, kTogether>>& derivative,
                         const Residuals& slope, const Residuals& curvature) {
@@ -91,6 +79,41 @@ SurfaceSystem& SurfaceSystem::operator+=(const SurfaceSystem& other) {
   corner += other.corner;
   gradient += other.gradient;
   return *this;
+}
+
+SurfaceSystem& SurfaceSystem::operator+=(const AlongSums& sums) {
+  for (std::size_t i = 0; i < band->pairs(); ++i) {
+    const double* six = &sums.six_[AlongSums::kSix * i];
+    Eigen::Matrix3d square;
+    square << six[0], six[1], six[2], six[1], six[3], six[4], six[2], six[4], six[5];
+    Block(&blocks[9 * i]) += square;
+  }
+  gradient += sums.gradient_;
+  return *this;
+}
+
+AlongSums::AlongSums(const NodeBand& band, std::size_t offsets)
+    : band_(band),
+      six_(kSix * band.pairs(), 0.0),
+      gradient_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * band.nodes() + offsets))) {}
+
+void AlongSums::add(const std::vector<std::int32_t>& node, const std::vector<double>& weight,
+                    const Eigen::Vector3d& direction, double slope, double curvature) {
+  const Eigen::Vector3d pull = slope * direction, bent = curvature * direction;
+  const double square[kSix] = {bent.x() * direction.x(), bent.x() * direction.y(), bent.x() * direction.z(),
+                               bent.y() * direction.y(), bent.y() * direction.z(), bent.z() * direction.z()};
+  for (std::size_t a = 0; a < node.size(); ++a) {
+    gradient_.segment<3>(3 * node[a]) += weight[a] * pull;
+    double left[kSix];
+    for (std::size_t k = 0; k < kSix; ++k) left[k] = weight[a] * square[k];
+    const std::size_t first = band_.first(static_cast<std::size_t>(node[a]));
+    double* row = &six_[kSix * band_.pair(static_cast<std::size_t>(node[a]), first)];
+    for (std::size_t b = 0; b <= a; ++b) {
+      double* here = row + kSix * (static_cast<std::size_t>(node[b]) - first);
+      const double share = weight[b];
+      for (std::size_t k = 0; k < kSix; ++k) here[k] += share * left[k];
+    }
+  }
 }
 
 }  // namespace arris

@@ -24,9 +24,6 @@ struct SurfaceSystem {
   /// Adds slope * J to the gradient and curvature * J'J to the information; for least squares slope = weight
   /// * residual, curvature = weight.
   void add(const Row& row, double slope, double curvature);
-  /// The same for a row whose directions are weight[k] * direction, all of one direction.
-  void add_along(const std::vector<std::int32_t>& node, const std::vector<double>& weight,
-                 const Eigen::Vector3d& direction, double slope, double curvature);
   /// The same for several residuals of the same nodes at once: derivatives of node k are column k's (3 x 6).
   static constexpr int kTogether = 6;
   using Residuals = Eigen::Matrix<double, kTogether, 1>;
@@ -46,6 +43,7 @@ struct SurfaceSystem {
   /// The whole information, both triangles.
   [[nodiscard]] Eigen::MatrixXd dense() const;
   SurfaceSystem& operator+=(const SurfaceSystem& other);
+  SurfaceSystem& operator+=(const class AlongSums& sums);
 
   using Block = Eigen::Map<Eigen::Matrix3d>;
   using ConstBlock = Eigen::Map<const Eigen::Matrix3d>;
@@ -63,6 +61,23 @@ struct SurfaceSystem {
   Eigen::MatrixXd border;      ///< offsets x 3 nodes
   Eigen::VectorXd corner;      ///< of the offsets, which share no residual
   Eigen::VectorXd gradient;
+};
+
+/// Sums of many rows whose directions are weight[k] * direction, all of one direction: their blocks are
+/// symmetric, six numbers instead of nine. This is the hot loop of a dense scan's fit.
+class AlongSums {
+ public:
+  AlongSums(const NodeBand& band, std::size_t offsets);
+  /// node: ascending; slope and curvature as SurfaceSystem::add() takes them.
+  void add(const std::vector<std::int32_t>& node, const std::vector<double>& weight,
+           const Eigen::Vector3d& direction, double slope, double curvature);
+
+ private:
+  friend struct SurfaceSystem;
+  static constexpr std::size_t kSix = 6;  // 00 01 02 11 12 22
+  const NodeBand& band_;
+  std::vector<double> six_;  // of each pair
+  Eigen::VectorXd gradient_;
 };
 
 }  // namespace arris

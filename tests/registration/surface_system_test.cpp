@@ -118,7 +118,9 @@ struct Sum {
       weight.push_back(random.normal());
       j.segment<3>(3 * n) = weight.back() * direction;
     }
-    system.add_along(node, weight, direction, 0.7, 3.0);
+    AlongSums sums(*system.band, 2);
+    sums.add(node, weight, direction, 0.7, 3.0);
+    system += sums;
     expect(j, 0.7, 3.0);
   }
   void add_together(const std::vector<std::int32_t>& node, Random& random) {
@@ -233,14 +235,16 @@ TEST(SurfaceSystem, FindsTheFieldAndTheCovarianceThatCeresFinds) {
   const auto equations = [&] {
     SurfaceSystem system(basis.band(), 0);
     for (const SheetCell& cell : sheet) cell.add(ours, prior, system);
+    AlongSums sums(*basis.band(), 0);
     for (const SeenPlace& place : seen)
       for (int axis = 0; axis < 3; ++axis) {
         std::vector<double> weight;
         for (const BasisRow::Weights& w : place.row->weight) weight.push_back(w[BasisRow::kValue]);
         const double off_mm = (place.row->combine(BasisRow::kValue, ours) - place.seen_mm)[axis];
         const double precision = 1.0 / (place.sigma_mm * place.sigma_mm);
-        system.add_along(place.row->node, weight, Eigen::Vector3d::Unit(axis), precision * off_mm, precision);
+        sums.add(place.row->node, weight, Eigen::Vector3d::Unit(axis), precision * off_mm, precision);
       }
+    system += sums;
     return system;
   };
   for (int round = 0; round < 30; ++round) {
