@@ -84,6 +84,7 @@ void SurfaceFactor::solve_upper_down_to(std::size_t to, Eigen::Ref<Eigen::Matrix
 }
 
 void SurfaceFactor::solve_lower(Eigen::Ref<Eigen::MatrixXd> columns) const {
+  if (columns.cols() == 0) return;  // Eigen would take the address of what is not there
   solve_lower_from(0, columns);
 }
 
