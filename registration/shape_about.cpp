@@ -57,7 +57,6 @@ std::vector<double> edge_slopes(const CadModel& cad, const SurfaceBasis& basis,
   std::vector<double> slopes;
   for (const std::vector<ContourStation>& stations : contours)
     for (const ContourStation& at : stations) {
-      if (!at.row.usable()) continue;
       const LocalShape shape = shape_about(cad, basis, at.point_mm, at.row, shift_mm);
       const Eigen::Vector3d inward =
           at.inward.dot(at.row.t1) * shape.f1 + at.inward.dot(at.row.t2) * shape.f2;

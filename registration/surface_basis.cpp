@@ -84,9 +84,9 @@ BasisRow SurfaceBasis::row(const Eigen::Vector3d& p_cad_mm, const Eigen::Vector3
   row.t2 = frame.col(1);
   if (order_.empty()) return row;
   const Eigen::Array3i at = ((p_cad_mm - low_mm_) / cell_mm_).array().floor().cast<int>();
-  row.node.reserve(kUsualNodes);
   const Eigen::Array3i low = (at - 1).max(0), high = (at + 1).min(count_ - 1);
   std::vector<std::pair<std::int32_t, double>> around;  // nodes of the same sheet, and how far they are
+  around.reserve(2 * kUsualNodes);
   double spacing_mm = std::numeric_limits<double>::max(), widest_mm = 0.0;
   for (int z = low.z(); z <= high.z(); ++z)
     for (int y = low.y(); y <= high.y(); ++y)
@@ -100,23 +100,24 @@ BasisRow SurfaceBasis::row(const Eigen::Vector3d& p_cad_mm, const Eigen::Vector3
           if (apart_mm < kRadiusSpacings * nodes_.spacing_mm[j]) around.emplace_back(order_[k], apart_mm);
         }
   spacing_mm = std::min(spacing_mm, widest_mm);
-  for (const auto& [j, apart_mm] : around)
-    if (apart_mm < kRadiusSpacings * spacing_mm) row.node.push_back(j);
-  std::sort(row.node.begin(), row.node.end());
-  std::vector<double> weights;
   const double unit_mm = kRadiusSpacings * spacing_mm;
+  std::erase_if(around, [&](const auto& node) { return node.second >= unit_mm; });
+  std::sort(around.begin(), around.end());
   row.spacing_mm = spacing_mm;
-  weights.reserve(row.node.size());
-  row.weight.reserve(row.node.size());
-  for (const std::int32_t j : row.node) {
-    const Eigen::Vector3d apart = nodes_.points_mm[static_cast<std::size_t>(j)] - p_cad_mm;
+  std::vector<double> weights;
+  weights.reserve(around.size());
+  row.node.reserve(around.size());
+  row.weight.reserve(around.size());
+  for (const auto& [node, apart_mm] : around) {
+    const auto j = static_cast<std::size_t>(node);
+    const Eigen::Vector3d apart = nodes_.points_mm[j] - p_cad_mm;
     const double u = apart.dot(row.t1) / unit_mm, v = apart.dot(row.t2) / unit_mm;
-    const double reach_mm =
-        kRadiusSpacings * std::min(spacing_mm, nodes_.spacing_mm[static_cast<std::size_t>(j)]);
+    const double reach_mm = kRadiusSpacings * std::min(spacing_mm, nodes_.spacing_mm[j]);
     BasisRow::Weights p;
     p << 1.0, u, v, 0.5 * u * u, u * v, 0.5 * v * v;
+    row.node.push_back(node);
     row.weight.push_back(p);
-    weights.push_back(wendland_c2(apart.norm() / reach_mm));
+    weights.push_back(wendland_c2(apart_mm / reach_mm));
   }
   Eigen::Matrix<double, 6, 6> moment = Eigen::Matrix<double, 6, 6>::Zero();
   double total = 0.0;

@@ -34,9 +34,12 @@ struct BasisRow {
 
 /// Smooth functions over the surface from values at scattered nodes: moving least squares with quadratic
 /// polynomials in the tangent plane (Lancaster and Salkauskas, Math. Comp. 37, 1981) and Wendland's C2
-/// weight of radius 2.4 spacings. The weights sum to one and reproduce linear and quadratic functions; slopes
-/// and second derivatives are the local polynomial's ("diffuse" derivatives: same order of accuracy). Nodes
-/// whose normal turns by more than about 80 degrees lie on another sheet and take no part.
+/// weight. Its radius is 2.4 spacings, the node's or that of the place, whichever is less: so wide nodes do
+/// not smooth what close ones follow, and two nodes share a row only within the sum of their radii. The
+/// weights sum to one and reproduce linear and quadratic functions; slopes and second derivatives are the
+/// local polynomial's
+/// ("diffuse" derivatives: same order of accuracy). Nodes whose normal turns by more than about 80 degrees
+/// lie on another sheet and take no part.
 class SurfaceBasis {
  public:
   /// The nodes are numbered anew, along the part.

@@ -228,23 +228,23 @@ class SurfaceFitter {
 
   /// The same field on other nodes; all points take part already.
   void stand_on(SurfaceGround ground) {
-    const SurfaceFit before = fit_;
+    const std::shared_ptr<const SurfaceBasis> basis = fit_.basis;
+    const std::vector<Eigen::Vector3d> shift_mm = std::move(fit_.shift_mm);
     ground_ = std::move(ground);
     fit_.basis = ground_.basis;
     const SurfaceNodes& nodes = fit_.basis->nodes();
     fit_.shift_mm.clear();
     for (std::size_t j = 0; j < nodes.points_mm.size(); ++j)
       fit_.shift_mm.push_back(
-          before.basis->row(nodes.points_mm[j], nodes.normals[j]).combine(BasisRow::kValue, before.shift_mm));
+          basis->row(nodes.points_mm[j], nodes.normals[j]).combine(BasisRow::kValue, shift_mm));
     renew_rows(*fit_.basis, options_.threads, pairs_);
     lay_out_strips(1);
     (void)call_burrs();
   }
 
-  /// Nodes closer together beside the contours, as long as that is worth it. A part that stays rigid has no
-  /// shape to follow.
+  /// Nodes closer together beside the contours, as long as that is worth it.
   void choose_nodes() {
-    while (fit_.usable() && (followed_shape() || (bends() && turned_edges()))) {
+    while (fit_.usable() && went_finer()) {
     }
     if (fit_.usable()) weigh_unfollowed();
   }
@@ -255,28 +255,33 @@ class SurfaceFitter {
     return static_cast<double>(fit_.pairs) * spacing_mm * spacing_mm >= kFewestPointsANode * ground_.area_mm2;
   }
 
-  /// True: nodes closer together follow a shape that was left, and stay.
-  bool followed_shape() {
+  /// True: nodes closer together follow a shape that was left, or turn the edges, and stay.
+  bool went_finer() {
     const double cell_mm = kShapeCellRatio * fit_.basis->spacing_mm(), left_mm = shape_left_mm(cell_mm);
     const double told_mm =
         kWorthSigmas * fit_.sigma_mm *
         std::sqrt(static_cast<double>(fit_.basis->size()) / static_cast<double>(fit_.pairs));
-    if (left_mm < std::max(kWorthMm, told_mm) || !enough_points_for(finer_mm())) return false;
-    return keep_finer_if([&] { return shape_left_mm(cell_mm) < kWorthRatio * left_mm; });
-  }
-
-  /// True: nodes closer together turn the edges by more than noise does, and stay. At a free edge, where
-  /// tools work, a part bends in ways that heights hardly show. Nodes follow what noise neighbours share as
-  /// well, so where that alone turns edges nothing is tried.
-  bool turned_edges() {
-    const double noise_rad = slope_noise_rad(finer_mm());
-    if (finer_mm() < kLeastNodesRatio * options_.node_spacing_mm || noise_rad > kMostSlopeNoiseRad)
-      return false;
+    const bool shape = left_mm >= std::max(kWorthMm, told_mm) && enough_points_for(finer_mm());
+    const double turn_rad = turn_worth_rad();
+    if (!shape && std::isinf(turn_rad)) return false;
     const std::vector<double> before = edge_slopes(cad_, *fit_.basis, ground_.contours, fit_.shift_mm);
     return keep_finer_if([&] {
-      const std::vector<double> after = edge_slopes(cad_, *fit_.basis, ground_.contours, fit_.shift_mm);
-      return rms_difference(before, after) > std::max(kWorthSlopeRad, kWorthSlopeNoises * noise_rad);
+      if (shape && shape_left_mm(cell_mm) < kWorthRatio * left_mm) return true;
+      return rms_difference(before, edge_slopes(cad_, *fit_.basis, ground_.contours, fit_.shift_mm)) >
+             turn_rad;
     });
+  }
+
+  /// Turn of the edges that nodes closer together are kept for: at a free edge, where tools work, a part
+  /// bends in ways that heights hardly show. Nodes follow what noise neighbours share as well; where that
+  /// alone turns edges no turn is worth it. Infinite too for a part that stays rigid, and where nodes are
+  /// close enough.
+  [[nodiscard]] double turn_worth_rad() const {
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    if (!bends() || finer_mm() < kLeastNodesRatio * options_.node_spacing_mm) return kNone;
+    const double noise_rad = slope_noise_rad(finer_mm());
+    if (noise_rad > kMostSlopeNoiseRad) return kNone;
+    return std::max(kWorthSlopeRad, kWorthSlopeNoises * noise_rad);
   }
 
   /// Of the slope that nodes so far apart have at an edge: from the points' own noise and from what
@@ -292,14 +297,15 @@ class SurfaceFitter {
   bool keep_finer_if(const std::function<bool()>& worth) {
     SurfaceGround finer = graded_ground(cad_, band_mm(), finer_mm(), options_.node_spacing_mm);
     if (finer.too_fine()) return false;
-    const SurfaceFit before = fit_;
+    const std::vector<Eigen::Vector3d> shift_mm = fit_.shift_mm;
+    const std::vector<double> offset_mm = fit_.offset_mm;
     SurfaceGround coarser = ground_;
     stand_on(std::move(finer));
     settle();
     if (!fit_.usable() || worth()) return true;
     stand_on(std::move(coarser));
-    fit_.shift_mm = before.shift_mm;
-    fit_.offset_mm = before.offset_mm;
+    fit_.shift_mm = shift_mm;
+    fit_.offset_mm = offset_mm;
     settle();
     return false;
   }
