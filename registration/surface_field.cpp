@@ -51,7 +51,10 @@ MappedPoint SurfaceField::map(const Eigen::Vector3d& p_cad_mm) const {
   const Eigen::Vector3d tangent = inward.cross(row.normal).normalized();
   mapped.sd_mm = {sd_along_mm(row, shape.normal, -1), sd_along_mm(row, turn * inward, follow ? contour : -1),
                   sd_along_mm(row, turn * tangent, -1)};
-  if (follow) mapped.sd_mm.y() = std::hypot(mapped.sd_mm.y(), fit_.scanner_sd_mm);
+  // Across, the edge itself shows what strain does; along it nothing does.
+  mapped.sd_mm.z() = std::hypot(mapped.sd_mm.z(), sd_strained_mm(row, turn * tangent));
+  mapped.sd_mm.y() =
+      std::hypot(mapped.sd_mm.y(), follow ? fit_.scanner_sd_mm : sd_strained_mm(row, turn * inward));
   mapped.sd_axis_rad = sd_tilt_rad(row, inward, shape.normal);
   const double more_mm2 = unfollowed_mm2(row), wave_mm = 2.0 * row.spacing_mm;
   mapped.sd_mm.x() = std::hypot(mapped.sd_mm.x(), std::sqrt(more_mm2));
@@ -84,6 +87,14 @@ double SurfaceField::sd_along_mm(const BasisRow& row, const Eigen::Vector3d& dir
     variance += row.weight[a][0] * direction.dot(sum);
   }
   return std::sqrt(std::max(0.0, variance));
+}
+
+double SurfaceField::sd_strained_mm(const BasisRow& row, const Eigen::Vector3d& direction) const {
+  const Eigen::MatrixXd& moves = fit_.common_strain_mm;
+  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(moves.cols());
+  for (std::size_t k = 0; k < row.node.size() && moves.cols() > 0; ++k)
+    sum += row.weight[k][BasisRow::kValue] * (direction.transpose() * moves.middleRows<3>(3 * row.node[k]));
+  return sum.norm();
 }
 
 double SurfaceField::sd_tilt_rad(const BasisRow& row, const Eigen::Vector3d& inward,

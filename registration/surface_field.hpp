@@ -38,6 +38,8 @@ class SurfaceField final : public DeformationField {
 
  private:
   [[nodiscard]] double sd_along_mm(const BasisRow& row, const Eigen::Vector3d& direction, int offset) const;
+  /// Beyond the covariance: what the place owes along a direction to strain that all of the sheet may share.
+  [[nodiscard]] double sd_strained_mm(const BasisRow& row, const Eigen::Vector3d& direction) const;
   /// Beyond the covariance: height that the nodes about this place do not follow; mm^2.
   [[nodiscard]] double unfollowed_mm2(const BasisRow& row) const;
   /// How the surface about a place turns.

@@ -9,6 +9,7 @@
 #include "acquisition/geometry/parallel_for.hpp"
 #include "acquisition/types/error.hpp"
 #include "registration/common_height.hpp"
+#include "registration/common_strain.hpp"
 #include "registration/edge_strips.hpp"
 #include "registration/seen_elsewhere.hpp"
 #include "registration/shape_about.hpp"
@@ -91,6 +92,7 @@ class SurfaceFitter {
       average_edges();
       fit_.elsewhere_mm = seen_better_by_mm(*strips_, ground_.contours, fit_.shift_mm, scan_.spacing_mm,
                                             [&](const auto& shift_mm) { lay_strips(shift_mm, false); });
+      fit_.common_strain_mm = moves_by_common_strain(ground_.sheet, fit_.shift_mm, prior_, fit_.covariance);
       fit_.covariance += doubt_mm2_;
     }
     return std::move(fit_);

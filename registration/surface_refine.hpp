@@ -43,7 +43,10 @@ struct SurfaceFit {
   std::vector<Eigen::Vector3d> shift_mm;  ///< one a node, CAD frame
   std::vector<double> offset_mm;          ///< one an edge used: it lies this far inside the material
   Eigen::MatrixXd covariance;             ///< of the node shifts (3 each), then the offsets; mm^2
-  double scanner_sd_mm = 0.0;             ///< of the scanner's edge; not in the covariance
+  /// How far strains that all of the sheet may share would have moved the unknowns of the covariance, in
+  /// columns that are independent; not in the covariance.
+  Eigen::MatrixXd common_strain_mm;
+  double scanner_sd_mm = 0.0;  ///< of the scanner's edge; not in the covariance
   /// Mean square of the height that neighbouring points share beyond the field (in the covariance), and how
   /// much more of it there is about each node.
   double unfollowed_mean_mm2 = 0.0;

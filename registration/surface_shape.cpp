@@ -51,8 +51,8 @@ Eigen::Vector3d SheetCell::mid_strain(const std::vector<Eigen::Vector3d>& shift_
   return strain;
 }
 
-void SheetCell::add(const std::vector<Eigen::Vector3d>& shift_mm, const SheetPrior& prior,
-                    SurfaceSystem& system) const {
+SheetCell::Terms SheetCell::terms(const std::vector<Eigen::Vector3d>& shift_mm,
+                                  const SheetPrior& prior) const {
   const LocalShape shape = local_shape(row_, shift_mm);
   const std::array<Eigen::Vector3d, 2> f = {shape.f1, shape.f2};
   Eigen::Matrix2d metric;
@@ -62,26 +62,45 @@ void SheetCell::add(const std::vector<Eigen::Vector3d>& shift_mm, const SheetPri
                                                inverse(1, 0) * f[0] + inverse(1, 1) * f[1]};
   const double share = area_mm2_ / (prior.patch_mm * prior.patch_mm);
   const double half_mm = 0.5 * prior.thickness_mm;
-  std::vector<Eigen::Matrix<double, 3, SurfaceSystem::kTogether>> derivative(row_.node.size());
-  SurfaceSystem::Residuals residual, weight;
+  Terms of;
+  of.derivative.resize(row_.node.size());
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t a = static_cast<std::size_t>(kPairs[k][0]), b = static_cast<std::size_t>(kPairs[k][1]);
     const auto strain = static_cast<Eigen::Index>(k), bend = static_cast<Eigen::Index>(k + 3);
     const int second = BasisRow::kD11 + static_cast<int>(k);
     const Eigen::Vector3d bent = second_[k] + row_.combine(second, shift_mm);
-    residual[bend] = shape.normal.dot(bent) - row_.normal.dot(second_[k]);
-    residual[strain] = 0.5 * (f[a].dot(f[b]) - (a == b ? 1.0 : 0.0)) + half_mm * residual[bend];
+    of.residual[bend] = shape.normal.dot(bent) - row_.normal.dot(second_[k]);
+    of.residual[strain] = 0.5 * (f[a].dot(f[b]) - (a == b ? 1.0 : 0.0)) + half_mm * of.residual[bend];
     const double gamma1 = dual[0].dot(bent), gamma2 = dual[1].dot(bent);
     for (std::size_t j = 0; j < row_.node.size(); ++j) {
       const BasisRow::Weights& w = row_.weight[j];
       const double d[2] = {w[BasisRow::kD1], w[BasisRow::kD2]};
-      derivative[j].col(bend) = (w[second] - gamma1 * d[0] - gamma2 * d[1]) * shape.normal;
-      derivative[j].col(strain) = 0.5 * (d[a] * f[b] + d[b] * f[a]) + half_mm * derivative[j].col(bend);
+      of.derivative[j].col(bend) = (w[second] - gamma1 * d[0] - gamma2 * d[1]) * shape.normal;
+      of.derivative[j].col(strain) = 0.5 * (d[a] * f[b] + d[b] * f[a]) + half_mm * of.derivative[j].col(bend);
     }
-    weight[strain] = kMultiplicity[k] * share / (prior.strain_ratio * prior.strain_ratio);
-    weight[bend] = kMultiplicity[k] * share / (prior.bend_per_mm * prior.bend_per_mm);
+    of.weight[strain] = kMultiplicity[k] * share / (prior.strain_ratio * prior.strain_ratio);
+    of.weight[bend] = kMultiplicity[k] * share / (prior.bend_per_mm * prior.bend_per_mm);
   }
-  system.add(row_.node, derivative, weight.cwiseProduct(residual), weight);
+  return of;
+}
+
+void SheetCell::add(const std::vector<Eigen::Vector3d>& shift_mm, const SheetPrior& prior,
+                    SurfaceSystem& system) const {
+  const Terms of = terms(shift_mm, prior);
+  system.add(row_.node, of.derivative, of.weight.cwiseProduct(of.residual), of.weight);
+}
+
+void SheetCell::add_pull(const std::vector<Eigen::Vector3d>& shift_mm, const SheetPrior& prior,
+                         std::span<const Eigen::Matrix3d> strain, Eigen::Ref<Eigen::MatrixXd> columns) const {
+  const Terms of = terms(shift_mm, prior);
+  for (std::size_t column = 0; column < strain.size(); ++column) {
+    const Eigen::Matrix3d& e = strain[column];
+    const Eigen::Vector3d here(row_.t1.dot(e * row_.t1), row_.t1.dot(e * row_.t2), row_.t2.dot(e * row_.t2));
+    const Eigen::Vector3d pull = of.weight.head<3>().cwiseProduct(here);
+    for (std::size_t j = 0; j < row_.node.size(); ++j)
+      columns.col(static_cast<Eigen::Index>(column)).segment<3>(3 * row_.node[j]) +=
+          of.derivative[j].leftCols<3>() * pull;
+  }
 }
 
 }  // namespace arris

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "registration/surface_basis.hpp"
@@ -40,11 +41,22 @@ class SheetCell {
   [[nodiscard]] const BasisRow& row() const { return row_; }
   void add(const std::vector<Eigen::Vector3d>& shift_mm, const SheetPrior& prior,
            SurfaceSystem& system) const;
+  /// Adds to each column (3 a node) how the priors pull were the mid-surface strained by strain[column]
+  /// (symmetric, CAD frame) as it is drawn.
+  void add_pull(const std::vector<Eigen::Vector3d>& shift_mm, const SheetPrior& prior,
+                std::span<const Eigen::Matrix3d> strain, Eigen::Ref<Eigen::MatrixXd> columns) const;
   /// Strain of the mid-surface, components 11, 12, 22.
   [[nodiscard]] Eigen::Vector3d mid_strain(const std::vector<Eigen::Vector3d>& shift_mm,
                                            double thickness_mm) const;
 
  private:
+  /// Strains 11, 12, 22, then bends.
+  struct Terms {
+    std::vector<Eigen::Matrix<double, 3, SurfaceSystem::kTogether>> derivative;  // of each node
+    SurfaceSystem::Residuals residual, weight;
+  };
+  [[nodiscard]] Terms terms(const std::vector<Eigen::Vector3d>& shift_mm, const SheetPrior& prior) const;
+
   BasisRow row_;
   std::array<Eigen::Vector3d, 3> second_;  // x,11 x,12 x,22 of the CAD
   double area_mm2_ = 0.0;
