@@ -96,7 +96,7 @@ struct Recipe {
   };
   struct Registration {
     std::string method = "surface";
-    double min_seen_ratio = 0.6;
+    std::optional<double> min_seen_ratio;
     std::optional<double> max_unseen_mm;
     double max_sd_mm = 1.0;
     Subdivision subdivision;

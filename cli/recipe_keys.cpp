@@ -235,9 +235,11 @@ std::vector<Key> registration_keys(Recipe::Registration& registration) {
        .words = {"surface", "subdivision", "projection", "rigid"}},
       {.name = "registration.min_seen_ratio",
        .slot = &registration.min_seen_ratio,
-       .about = "share of each contour's length that the scan must show; less is refused",
+       .about =
+           "share of each contour's length that the scan must show; unset: 0.5 with method surface, else 0.6",
        .min = 0.0,
-       .max = 1.0},
+       .max = 1.0,
+       .example = "0.6"},
       {.name = "registration.max_unseen_mm",
        .slot = &registration.max_unseen_mm,
        .about = "longest stretch of contour that the scan may miss; unset: 200 with method surface, else 100",

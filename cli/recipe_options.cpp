@@ -93,9 +93,10 @@ RegistrationOptions registration_options(const Recipe& recipe, int threads) {
   options.projection.kind = projection_of(recipe.registration.projection.model);
   options.projection.distance_mm = recipe.registration.projection.distance_mm;
   options.projection.max_residual_mm = recipe.registration.projection.max_residual_mm;
-  options.min_seen_ratio = recipe.registration.min_seen_ratio;
-  options.max_unseen_mm = recipe.registration.max_unseen_mm.value_or(
-      options.method == RegistrationMethod::kSurface ? kSurfaceUnseenMm : kUnseenMm);
+  const bool surface = options.method == RegistrationMethod::kSurface;
+  options.min_seen_ratio =
+      recipe.registration.min_seen_ratio.value_or(surface ? kSurfaceSeenRatio : kSeenRatio);
+  options.max_unseen_mm = recipe.registration.max_unseen_mm.value_or(surface ? kSurfaceUnseenMm : kUnseenMm);
   options.mid_depth_mm = 0.5 * recipe.part.thickness_mm.value_or(0.0);
   options.band_mm = options.coarse.band_mm = options.rigid.band_mm = options.surface.band_mm = s.band_mm;
   options.max_sd_mm = recipe.registration.max_sd_mm;

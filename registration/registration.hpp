@@ -24,8 +24,9 @@ enum class RefineMethod { kNone, kCeres };
 
 /// Longest stretch of contour without data, when the recipe names none. A surface field carries such a
 /// stretch by the rest of the contour and knows how well (max_sd_mm): on the finite element parts, gaps up to
-/// its 200 mm stay inside the stated bound.
+/// its 200 mm stay inside the stated bound, and so does the rest of a contour of which half is seen.
 inline constexpr double kUnseenMm = 100.0, kSurfaceUnseenMm = 200.0;
+inline constexpr double kSeenRatio = 0.6, kSurfaceSeenRatio = 0.5;
 
 /// Everything the recipe may choose about registration.
 struct RegistrationOptions {
@@ -38,9 +39,9 @@ struct RegistrationOptions {
   EdgeFitOptions edge;
   ProjectionOptions projection;
   ContourRole role = ContourRole::kEdge;
-  double band_mm = 60.0;                    ///< where the field speaks
-  double min_seen_ratio = 0.6;              ///< of each contour's length; below it: refused
-  double max_unseen_mm = kSurfaceUnseenMm;  ///< longest stretch of contour without data; above it: refused
+  double band_mm = 60.0;                      ///< where the field speaks
+  double min_seen_ratio = kSurfaceSeenRatio;  ///< of each contour's length; below it: refused
+  double max_unseen_mm = kSurfaceUnseenMm;    ///< longest stretch of contour without data; above it: refused
   double max_sd_mm = 1.0;     ///< method surface: a contour known worse than this across is refused
   double mid_depth_mm = 0.0;  ///< of the mid-surface below the scanned face, for the strain; 0: not known
   int threads = 0;

@@ -4,6 +4,7 @@
 
 #include <numbers>
 #include <regex>
+#include <tuple>
 
 #include "cli/recipe_options.hpp"
 #include "tests/cli/run_arris.hpp"
@@ -181,6 +182,24 @@ TEST(Recipe, FromContourDefaultsAreThoseOfTheRoom) {
   EXPECT_EQ(read.retract_mm, room.retract_mm);
   EXPECT_EQ(read.reversed, room.reversed);
   EXPECT_EQ(read.feed_mm_s, room.feed_mm_s);
+}
+
+TEST(Recipe, HowMuchMustBeSeenIsTheMethodsOwnUntilItIsNamed) {
+  Recipe recipe;
+  for (const auto& [method, seen, unseen_mm] :
+       {std::tuple("surface", 0.5, 200.0), std::tuple("subdivision", 0.6, 100.0),
+        std::tuple("rigid", 0.6, 100.0)}) {
+    recipe.registration.method = method;
+    EXPECT_EQ(registration_options(recipe, 0).min_seen_ratio, seen) << method;
+    EXPECT_EQ(registration_options(recipe, 0).max_unseen_mm, unseen_mm) << method;
+  }
+  recipe.registration.min_seen_ratio = 0.9;
+  recipe.registration.max_unseen_mm = 7.0;
+  for (const char* method : {"surface", "subdivision"}) {
+    recipe.registration.method = method;
+    EXPECT_EQ(registration_options(recipe, 0).min_seen_ratio, 0.9);
+    EXPECT_EQ(registration_options(recipe, 0).max_unseen_mm, 7.0);
+  }
 }
 
 TEST(Recipe, RegistrationDefaultsAreThoseOfTheRoom) {
