@@ -35,28 +35,30 @@ std::array<Eigen::Vector3d, 2> along_contours(const std::vector<std::vector<Cont
 
 }  // namespace
 
-double seen_better_by_mm(const EdgeStrips& strips, const std::vector<std::vector<ContourStation>>& contours,
-                         const std::vector<Eigen::Vector3d>& shift_mm, double spacing_mm,
-                         const std::function<void(const std::vector<Eigen::Vector3d>&)>& lay) {
-  double best_mm = 0.0;
+SeenElsewhere seen_elsewhere(const EdgeStrips& strips,
+                             const std::vector<std::vector<ContourStation>>& contours,
+                             const std::vector<Eigen::Vector3d>& shift_mm, double spacing_mm,
+                             const std::function<void(const std::vector<Eigen::Vector3d>&)>& lay) {
   lay(shift_mm);
   const double worth_mm = kWorthSeenRatio * strips.length_mm();
-  if (strips.length_mm() - strips.seen_mm() < worth_mm) return best_mm;
   const std::size_t beyond = strips.points_beyond();
-  double most_mm = shown_mm(strips, beyond, spacing_mm) + worth_mm;
+  SeenElsewhere best;
+  best.here_mm = shown_mm(strips, beyond, spacing_mm);
+  if (strips.length_mm() - strips.seen_mm() < worth_mm) return best;
+  double most_mm = best.here_mm + worth_mm;
   for (const Eigen::Vector3d& direction : along_contours(contours))
     for (int step = -kElsewhereSteps; step <= kElsewhereSteps; ++step) {
       std::vector<Eigen::Vector3d> moved = shift_mm;
-      const double by_mm = kElsewhereMm / kElsewhereSteps * step;
-      for (Eigen::Vector3d& shift : moved) shift += by_mm * direction;
+      const Eigen::Vector3d by_mm = kElsewhereMm / kElsewhereSteps * step * direction;
+      for (Eigen::Vector3d& shift : moved) shift += by_mm;
       lay(moved);
       const std::size_t beyond_now = strips.points_beyond();
       const double shown_now_mm = shown_mm(strips, beyond_now, spacing_mm);
       if (shown_now_mm <= most_mm || beyond_now > beyond + kFewBeyond) continue;
       most_mm = shown_now_mm;
-      best_mm = std::abs(by_mm);
+      best.by_mm = by_mm;
     }
-  return best_mm;
+  return best;
 }
 
 }  // namespace arris

@@ -42,6 +42,7 @@ constexpr double kStiffStrainRatio = 1e-5, kStiffBendPerMm = 1e-6;  // of a part
 constexpr double kRigidMm = 0.015, kRigidSigmas = 0.3, kMostRigidSigmas = 1.3;
 constexpr double kUnknownThicknessWiden = 2.0;  // the mid-surface's strain is then not known
 constexpr int kMostAverages = 8;                // rounds of messages between points and edges
+constexpr int kMostElsewhere = 3;               // fits from where more of the edges would be seen
 constexpr std::size_t kParts = 2;               // chunks of a list: each needs a system of its own
 
 /// Of two lists; 0 when they cannot be compared.
@@ -74,12 +75,35 @@ class SurfaceFitter {
       fit_.reason = "the drawing's band has no room for a surface field";
       return std::move(fit_);
     }
-    const std::vector<std::size_t> one_of_each = levels();
-    take_points(one_of_each.front());
+    take_points(levels().front());
     if (!stays_rigid()) {
       start_over();
       settle();
     }
+    finish();
+    if (fit_.usable() && !fit_.elsewhere.by_mm.isZero()) try_elsewhere();
+    return std::move(fit_);
+  }
+
+ private:
+  /// Fitted again from where more of the edges would be seen, as long as there is such a place; the fit that
+  /// sees most of them is kept.
+  void try_elsewhere() {
+    SurfaceFit most = fit_;
+    for (int more = 0; more < kMostElsewhere && !fit_.elsewhere.by_mm.isZero(); ++more) {
+      take_points(levels().front());
+      for (Eigen::Vector3d& shift : fit_.shift_mm) shift += fit_.elsewhere.by_mm;
+      look_coarsely();
+      settle();
+      finish();
+      if (!fit_.usable()) break;
+      if (fit_.elsewhere.here_mm > most.elsewhere.here_mm) most = fit_;
+    }
+    fit_ = std::move(most);
+  }
+
+  void finish() {
+    const std::vector<std::size_t> one_of_each = levels();
     for (std::size_t level = 1; level < one_of_each.size() && fit_.usable(); ++level) {
       take_points(one_of_each[level]);
       (void)call_burrs();  // before so many points pull the edge to them
@@ -90,15 +114,13 @@ class SurfaceFitter {
     for (int pass = 1; fit_.usable() && call_strays() && pass < kStrayPasses; ++pass) settle();
     if (fit_.usable()) {
       average_edges();
-      fit_.elsewhere_mm = seen_better_by_mm(*strips_, ground_.contours, fit_.shift_mm, scan_.spacing_mm,
-                                            [&](const auto& shift_mm) { lay_strips(shift_mm, false); });
+      fit_.elsewhere = seen_elsewhere(*strips_, ground_.contours, fit_.shift_mm, scan_.spacing_mm,
+                                      [&](const auto& shift_mm) { lay_strips(shift_mm, false); });
       fit_.common_strain_mm = moves_by_common_strain(ground_.sheet, fit_.shift_mm, prior_, fit_.covariance);
       fit_.covariance += doubt_mm2_;
     }
-    return std::move(fit_);
   }
 
- private:
   /// Of the CAD about the contours that carries the field; -1: all of it.
   [[nodiscard]] double band_mm() const {
     return options_.role == ContourRole::kCut ? -1.0 : options_.band_mm;
@@ -109,6 +131,10 @@ class SurfaceFitter {
     fit_.reason.clear();
     fit_.shift_mm.assign(fit_.basis->size(), Eigen::Vector3d::Zero());
     fit_.offset_mm.assign(edges_.size(), 0.0);
+    look_coarsely();
+  }
+
+  void look_coarsely() {
     scale_mm_ = options_.start_scale_mm;
     tau_mm_ = std::max(kStartTauMm, 0.5 * scan_.spacing_mm);
   }

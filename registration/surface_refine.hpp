@@ -8,6 +8,7 @@
 #include "acquisition/types/frames.hpp"
 #include "registration/scanner_edge.hpp"
 #include "registration/scene.hpp"
+#include "registration/seen_elsewhere.hpp"
 #include "registration/surface_basis.hpp"
 #include "registration/surface_shape.hpp"
 
@@ -51,8 +52,8 @@ struct SurfaceFit {
   /// much more of it there is about each node.
   double unfollowed_mean_mm2 = 0.0;
   std::vector<double> unfollowed_mm2;
-  double elsewhere_mm = 0.0;  ///< the contours, moved so far, would be seen much better; 0: nowhere
-  double sigma_mm = 0.0;      ///< robust residual normal to the surface
+  SeenElsewhere elsewhere;
+  double sigma_mm = 0.0;  ///< robust residual normal to the surface
   std::size_t pairs = 0;
   int rounds = 0;
   std::string stop;    ///< "converged", "round limit"

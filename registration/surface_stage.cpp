@@ -156,12 +156,12 @@ void judge_edges(const CadModel& cad, const SurfaceField& field, const Registrat
 
 /// A fit that slid along the part and took the edges it left behind for gaps.
 void judge_slide(const SurfaceField& field, double spacing_mm, Registration& result) {
-  if (!is_slide(field.fit().elsewhere_mm, spacing_mm)) return;
+  if (!is_slide(field.fit().elsewhere.by_mm.norm(), spacing_mm)) return;
   char text[200];
   std::snprintf(text, sizeof text,
                 "the edges would be seen much better with the part moved by %.0f mm: it was placed wrongly; "
                 "scan.initial in the recipe helps, or a scan of what is missing",
-                field.fit().elsewhere_mm);
+                field.fit().elsewhere.by_mm.norm());
   result.refusals.emplace_back(text);
 }
 

@@ -66,5 +66,19 @@ TEST(StatedErrors, HoldTheTrueOnesWhereHalfOfTheContoursIsSeen) {
       EXPECT_GE(one.table.at(direction, in_gap).inside_ratio(), 0.85) << "direction " << direction;
 }
 
+// With these stretches missing the search lays the slots 13 mm along their length, where their ends seem to
+// be missing too.
+TEST(StatedErrors, HoldTheTrueOnesOfSlotsThatWereFoundTooFarAlongTheirLength) {
+  const BenchPart part(kParts / "duct", 2);
+  synthetic::ScanOptions gaps;
+  gaps.missing_ratio = 0.15;
+  const Stated one = stated(part, gaps, 19);
+  ASSERT_TRUE(one.found.refusals.empty()) << one.found.refusals.front();
+  const Coverage& along = one.table.at(StatedError::kAlong, false);
+  EXPECT_LT(along.rms(), 0.2);
+  EXPECT_GE(along.inside_ratio(), 0.85);
+  EXPECT_GE(one.table.at(StatedError::kAcross, false).inside_ratio(), 0.85);
+}
+
 }  // namespace
 }  // namespace arris::bench
