@@ -9,20 +9,9 @@ namespace {
 
 using synthetic::PlatePart;
 
-/// Six holes of three sizes, of which the first is followed.
+/// The first hole is followed.
 const PlatePart& six_holes() {
-  static const PlatePart part = [] {
-    synthetic::PlateShape shape;
-    shape.holes.push_back({{-60.0, 20.0}, 45.0, 30.0, 8.0, 0.3});
-    shape.holes.push_back({{80.0, -30.0}, 35.0, 35.0, 35.0, 0.0});
-    for (const Eigen::Vector2d& at : {Eigen::Vector2d(-170.0, -120.0), Eigen::Vector2d(170.0, -120.0),
-                                      Eigen::Vector2d(170.0, 120.0), Eigen::Vector2d(-60.0, -90.0)})
-      shape.holes.push_back({at, 12.0, 12.0, 12.0, 0.0});
-    shape.bend_curvature_per_mm = 1.0 / 2000.0;
-    shape.bend_axis_rad = 0.5;
-    shape.scan_points = 10000;
-    return PlatePart(std::move(shape));
-  }();
+  static const PlatePart part(synthetic::plate_with_six_holes());
   return part;
 }
 

@@ -57,20 +57,6 @@ PlateShape nearly_symmetric_holes() {
   return shape;
 }
 
-/// Six holes of three sizes.
-PlateShape many_holes() {
-  PlateShape shape;
-  shape.holes.push_back({{-60.0, 20.0}, 45.0, 30.0, 8.0, 0.3});
-  shape.holes.push_back({{80.0, -30.0}, 35.0, 35.0, 35.0, 0.0});
-  for (const Eigen::Vector2d& at : {Eigen::Vector2d(-170.0, -120.0), Eigen::Vector2d(170.0, -120.0),
-                                    Eigen::Vector2d(170.0, 120.0), Eigen::Vector2d(-60.0, -90.0)})
-    shape.holes.push_back({at, 12.0, 12.0, 12.0, 0.0});
-  shape.bend_curvature_per_mm = 1.0 / 2000.0;
-  shape.bend_axis_rad = 0.5;
-  shape.scan_points = 10000;
-  return shape;
-}
-
 }  // namespace
 
 double PosePart::size_mm() const {
@@ -93,7 +79,7 @@ std::vector<PosePart> pose_parts(const std::filesystem::path& fixtures) {
   parts.push_back(plate("rectangle", rectangle(), {0}, false));
   parts.push_back(plate("nearly square", nearly_square(), {0}, false));
   parts.push_back(plate("nearly symmetric holes", nearly_symmetric_holes(), {0}, true));
-  parts.push_back(plate("six holes", many_holes(), {0}, true));
+  parts.push_back(plate("six holes", synthetic::plate_with_six_holes(), {0}, true));
   return parts;
 }
 
