@@ -102,6 +102,7 @@ class SurfaceFitter {
     fit_ = std::move(most);
   }
 
+  /// From few of the points to all: burrs, nodes, strays, the edges' mean, and what the fit may still owe.
   void finish() {
     const std::vector<std::size_t> one_of_each = levels();
     for (std::size_t level = 1; level < one_of_each.size() && fit_.usable(); ++level) {
