@@ -8,6 +8,7 @@
 #include "acquisition/geometry/parallel_for.hpp"
 #include "registration/path_symmetry.hpp"
 #include "registration/pose_evidence.hpp"
+#include "registration/pose_fitness.hpp"
 #include "registration/pose_search.hpp"
 #include "registration/support_fit.hpp"
 #include "registration/unit_guess.hpp"
@@ -16,28 +17,16 @@ namespace arris {
 namespace {
 
 constexpr std::size_t kRefined = 4, kRefinedMore = 8,
-                      kRefinedOfGood = 2;  // starts a hypothesis that are refined
-constexpr double kFitsCapRatio = 0.25;     // of the largest distance that scores count, beyond the spacing
-constexpr double kFewestShown = 0.40;      // of the contours: less shows no pose
-constexpr double kWellShown = 0.55;        // of the contours
-constexpr double kSeenCapRatio = 0.2;      // as kFitsCapRatio, of the places that tell anything
-constexpr double kHiddenRivalRatio = 0.7;  // of what the best pose shows: a hidden one with less is no rival
-constexpr double kMostAgainst = 0.2, kMostAgainstWhole = 0.1;  // of the contours: the face goes on there
-constexpr double kGoodCapRatio = 0.25;      // a pose from whole loops as good as this is not searched further
+                      kRefinedOfGood = 2;   // starts a hypothesis that are refined
+constexpr double kHiddenRivalRatio = 0.7;   // of what the best pose shows: a hidden one with less is no rival
 constexpr double kMirrorBetterRatio = 0.6;  // of the scores beyond what the point spacing alone leaves
 constexpr double kMirrorLeastRatio = 0.1;   // of the cap: a pose that leaves no more is not doubted
 constexpr double kMirrorOfAmbiguousRatio = 0.8;  // of the scores, when two poses fit alike
 constexpr double kInitialFitsRatio = 0.08;  // of the contour's size: a long side on a short one leaves more
-constexpr double kNotWorseRatio = 0.95;     // of the strict misfits: who wins by the patient one
 constexpr std::size_t kNearSample = 500;
-constexpr double kAlsoFitsRatio = 1.5;     // of what the best pose leaves: the other is a fit if it is one
 constexpr double kSelfMotionRatio = 0.06;  // of the contour's size: how well a motion of the drawing is known
-constexpr int kFewestConfirming = 3;
-constexpr double kConfirmsSpacings = 0.5;   // beyond the spacing
-constexpr double kConfirmedCapRatio = 0.4;  // as kFitsCapRatio
-constexpr std::size_t kSharpened = 4;       // of the best poses, when none fits
+constexpr std::size_t kSharpened = 4;      // of the best poses, when none fits
 constexpr int kSharpeningRounds = 3, kSharpeningPoints = 500;
-constexpr double kQuarterMissing = 0.78, kTenthMissing = 0.92;  // shown of the contours
 
 std::string millimetres(double value_mm) {
   char text[32];
@@ -51,27 +40,15 @@ std::string percent(double ratio) {
   return text;
 }
 
-/// What a score holds beyond the offset of angle-gap edge points, about a spacing.
-double beyond_spacing(double misfit_mm, const ScanModel& scan) {
-  return std::sqrt(std::max(0.0, misfit_mm * misfit_mm - scan.spacing_mm * scan.spacing_mm));
-}
-
-/// How much worse the other pose fits: of the misfits that leave out no less than the best pose's contours
-/// lack, the one that tells the two apart best, unless the strictest of them contradicts.
-double times_worse(const PoseCandidate& other, const PoseCandidate& best) {
-  const double patient = other.misfit.patient_mm / best.misfit.patient_mm;
-  if (best.misfit.shown_ratio < kQuarterMissing) return patient;
-  const double strictest = best.misfit.shown_ratio < kTenthMissing
-                               ? other.misfit.middle_mm / best.misfit.middle_mm
-                               : other.misfit.strict_mm / best.misfit.strict_mm;
-  return strictest < kNotWorseRatio ? strictest : std::max(patient, strictest);
-}
-
 /// One search: what was asked, and what each step found.
 class CoarseSearch {
  public:
   CoarseSearch(const CadModel& cad, const ScanModel& scan, const CoarseAlignOptions& options)
-      : cad_(cad), scan_(scan), options_(options), search_(cad, options.band_mm, options.threads) {}
+      : cad_(cad),
+        scan_(scan),
+        options_(options),
+        search_(cad, options.band_mm, options.threads),
+        fitness_(scan.spacing_mm, search_.score().cap_mm(), options.edges_needed) {}
 
   CoarseAlignment from_initial();
   CoarseAlignment from_nothing();
@@ -81,48 +58,8 @@ class CoarseSearch {
   /// The scan, or that with its other side up, made ready when first asked for.
   [[nodiscard]] const LightScan& light(bool flip);
   [[nodiscard]] std::vector<PoseCandidate> proper(StartSource source, std::size_t refined);
-  [[nodiscard]] bool fits(const std::vector<PoseCandidate>& found, double cap_ratio) const {
-    return !found.empty() &&
-           beyond_spacing(found.front().misfit.patient_mm, scan_) <= cap_ratio * search_.score().cap_mm() &&
-           not_contradicted(found.front());
-  }
-  /// Enough of its edges are in the scan, and the face ends there.
-  [[nodiscard]] bool not_contradicted(const PoseCandidate& pose) const {
-    return (pose.misfit.shown_ratio >= kFewestShown || !options_.edges_needed) &&
-           pose.misfit.against_ratio <= kMostAgainst;
-  }
-  /// So little of its edges is in the scan that it is never taken: it hangs where nothing was scanned.
-  [[nodiscard]] bool is_hidden(const PoseCandidate& pose) const {
-    return options_.edges_needed && pose.misfit.shown_ratio < kFewestShown;
-  }
-  /// A pose well seen that leaves much only where the scan tells nothing.
-  [[nodiscard]] bool fits_where_seen(const PoseCandidate& pose) const {
-    return pose.misfit.shown_ratio >= kWellShown && pose.misfit.against_ratio <= kMostAgainstWhole &&
-           beyond_spacing(pose.misfit.seen_mm, scan_) <= kSeenCapRatio * search_.score().cap_mm();
-  }
-  /// A pose that leaves much on the contours that it was fitted to, no more than where nothing can be told,
-  /// and that others of the drawing confirm, which took no part in the fit.
-  [[nodiscard]] bool confirmed_by_others(const PoseCandidate& pose) const {
-    return pose.misfit.others >= kFewestConfirming && not_contradicted(pose) &&
-           pose.misfit.others_mm <= kConfirmsSpacings * scan_.spacing_mm &&
-           beyond_spacing(pose.misfit.patient_mm, scan_) <= kConfirmedCapRatio * search_.score().cap_mm();
-  }
-  /// Best first, those that are never taken last.
-  void sort(std::vector<PoseCandidate>& found) const {
-    sort_by_misfit(found);
-    std::stable_partition(found.begin(), found.end(),
-                          [&](const PoseCandidate& pose) { return !is_hidden(pose); });
-  }
-  /// So well that nothing else need be tried: what the scan does not show may be beyond its border.
-  [[nodiscard]] bool fits_whole(const std::vector<PoseCandidate>& found) const {
-    return fits(found, kGoodCapRatio) && found.front().misfit.against_ratio <= kMostAgainstWhole &&
-           beyond_spacing(found.front().misfit.strict_mm, scan_) <= kGoodCapRatio * search_.score().cap_mm();
-  }
   [[nodiscard]] std::vector<PoseCandidate> with_turned(std::vector<PoseCandidate> found);
   [[nodiscard]] std::vector<PoseCandidate> all_candidates();
-  [[nodiscard]] bool fits_at_last(const std::vector<PoseCandidate>& found) const {
-    return fits(found, kFitsCapRatio) || fits_where_seen(found.front()) || confirmed_by_others(found.front());
-  }
   [[nodiscard]] PoseCandidate sharpened(PoseCandidate pose);
   [[nodiscard]] std::vector<PoseCandidate> all_sharpened(std::vector<PoseCandidate> found);
   void take(const PoseCandidate& best);
@@ -147,6 +84,7 @@ class CoarseSearch {
   const ScanModel& scan_;
   const CoarseAlignOptions& options_;
   PoseSearch search_;
+  PoseFitness fitness_;
   std::array<std::optional<LightScan>, 2> light_;
   std::vector<RigidMotion> self_motions_;
   std::optional<PoseCandidate> settled_best_;
@@ -200,7 +138,7 @@ CoarseAlignment CoarseSearch::from_initial() {
     result_.reason = "the data turn the part by more than the initial pose allows (within_deg)" +
                      search_.free_by_surface(scan_, best.flip, initial);
   else if (options_.edges_needed &&
-           beyond_spacing(result_.score_mm, scan_) > kInitialFitsRatio * search_.score().size_mm())
+           fitness_.beyond_spacing_mm(result_.score_mm) > kInitialFitsRatio * search_.score().size_mm())
     result_.reason = "the initial pose does not fit: the scan's edge stays " + millimetres(result_.score_mm) +
                      " mm from the contours";
   return result_;
@@ -215,12 +153,12 @@ const LightScan& CoarseSearch::light(bool flip) {
 /// The poses of the scan as it is and, when nothing says which side was seen, with the other side up.
 std::vector<PoseCandidate> CoarseSearch::proper(StartSource source, std::size_t refined) {
   std::vector<PoseCandidate> found = search_.candidates(light(false), source, refined);
-  sort(found);
+  fitness_.sort(found);
   if (!side_open()) return found;
   std::vector<PoseCandidate> flipped = search_.candidates(light(true), source, refined);
   for (PoseCandidate& candidate : flipped) candidate.flip = true;
   found.insert(found.end(), flipped.begin(), flipped.end());
-  sort(found);
+  fitness_.sort(found);
   return found;
 }
 
@@ -230,10 +168,10 @@ std::vector<PoseCandidate> CoarseSearch::with_turned(std::vector<PoseCandidate> 
   const LightScan& scan = light(found.front().flip);
   const std::vector<PoseCandidate> more = search_.turned(scan, found.front(), self_motions_);
   found.insert(found.end(), more.begin(), more.end());
-  sort(found);
+  fitness_.sort(found);
   const PoseCandidate settled = search_.settled(scan, found.front());  // it may be on its way along an oval
   if (settled.misfit.patient_mm < found.front().misfit.patient_mm) found.front() = settled;
-  sort(found);
+  fitness_.sort(found);
   return found;
 }
 
@@ -241,16 +179,16 @@ std::vector<PoseCandidate> CoarseSearch::with_turned(std::vector<PoseCandidate> 
 std::vector<PoseCandidate> CoarseSearch::all_candidates() {
   result_.start = "matching loops";
   std::vector<PoseCandidate> found = proper(StartSource::kLoops, kRefined);
-  if (fits_whole(found)) return with_turned(std::move(found));
+  if (!found.empty() && fitness_.fits_whole(found.front())) return with_turned(std::move(found));
   const auto add = [&](StartSource source, const char* words) {
     const double before_mm = found.empty() ? 1e300 : found.front().misfit.patient_mm;
     const std::vector<PoseCandidate> more = proper(source, kRefinedMore);
     found.insert(found.end(), more.begin(), more.end());
-    sort(found);
+    fitness_.sort(found);
     if (!found.empty() && found.front().misfit.patient_mm < before_mm) result_.start = words;
   };
   add(StartSource::kPieces, "matching pieces of contours");
-  if (!fits(found, kGoodCapRatio)) add(StartSource::kSurface, "matching surfaces");
+  if (found.empty() || !fitness_.fits(found.front())) add(StartSource::kSurface, "matching surfaces");
   return with_turned(std::move(found));
 }
 
@@ -299,16 +237,16 @@ std::vector<PoseCandidate> CoarseSearch::all_sharpened(std::vector<PoseCandidate
   sort_by_misfit(found);
   for (std::size_t i = 0; i < std::min(kSharpened, found.size()); ++i)
     if (found[i].usable()) found[i] = sharpened(std::move(found[i]));
-  sort(found);
+  fitness_.sort(found);
   return found;
 }
 
 /// A scan whose mirror image fits, or that fits inside out, is an input error and not a pose.
 bool CoarseSearch::refuse_wrong_hand(const std::vector<PoseCandidate>& found) {
   const PoseCandidate& best = found.front();
-  const double left_mm = beyond_spacing(best.misfit.patient_mm, scan_);
+  const double left_mm = fitness_.beyond_spacing_mm(best.misfit.patient_mm);
   const bool good =
-      side_open() || fits_whole(found) || left_mm < kMirrorLeastRatio * search_.score().cap_mm();
+      side_open() || fitness_.fits_whole(best) || left_mm < kMirrorLeastRatio * search_.score().cap_mm();
   const std::size_t refined = good ? kRefinedOfGood : kRefined;
   const std::vector<PoseCandidate> mirrored =
       search_.candidates(LightScan(scan_, false, true), StartSource::kLoops, refined, best.misfit.patient_mm);
@@ -317,7 +255,7 @@ bool CoarseSearch::refuse_wrong_hand(const std::vector<PoseCandidate>& found) {
   if (good) return false;
   const auto fits_better = [&](const std::vector<PoseCandidate>& others) {
     return !others.empty() &&
-           beyond_spacing(others.front().misfit.patient_mm, scan_) < kMirrorBetterRatio * left_mm;
+           fitness_.beyond_spacing_mm(others.front().misfit.patient_mm) < kMirrorBetterRatio * left_mm;
   };
   result_.mirrored = fits_better(mirrored);
   result_.inverted = fits_better(search_.candidates(light(true), StartSource::kLoops, refined));
@@ -367,19 +305,13 @@ bool CoarseSearch::comes_to(const PoseCandidate& best, const PoseCandidate& othe
 /// where the best one does, but not the path: its worse score comes from how the part is bent, or from noise.
 bool CoarseSearch::only_bending_decides(const PoseCandidate& best, const PoseCandidate& other,
                                         const PathSymmetry& path) {
-  const double fits_mm = kFitsCapRatio * search_.score().cap_mm();
-  const double most_mm = std::max(fits_mm, kAlsoFitsRatio * beyond_spacing(best.misfit.patient_mm, scan_));
-  const auto fits_too = [&](const PoseCandidate& pose) {
-    return pose.usable() && beyond_spacing(pose.misfit.patient_mm, scan_) <= most_mm &&
-           not_contradicted(pose);
-  };
-  if (!fits_too(other)) return false;
+  if (!fitness_.fits_too(other, best)) return false;
   const auto [a, b] = settled(best, other);
-  if (!a.usable() || !fits_too(b)) return false;
+  if (!a.usable() || !fitness_.fits_too(b, best)) return false;
   const std::optional<RigidMotion> motion = search_.self_motion_between(a, b, self_motions_);
   if (!motion || path.maps_onto_itself(*motion)) return false;
   const double size_mm = search_.score().size_mm();
-  const PoseTolerance tolerance = pose_tolerance(scan_.spacing_mm, size_mm, fits_mm);
+  const PoseTolerance tolerance = pose_tolerance(scan_.spacing_mm, size_mm, fitness_.fits_mm());
   const double within_mm = kSelfMotionRatio * size_mm;
   // A path round the edges that are seen goes where they are, nearly the same from either pose.
   if (options_.edges_needed && path.farthest_off_mm(*motion) <= tolerance.in_face_mm + within_mm)
@@ -416,7 +348,7 @@ void CoarseSearch::judge_runner_up(const std::vector<PoseCandidate>& proper) {
     if (told || !other.usable()) continue;
     const double worse = times_worse(other, best);
     const bool no_rival =
-        is_hidden(other) && other.misfit.shown_ratio < kHiddenRivalRatio * best.misfit.shown_ratio;
+        fitness_.is_hidden(other) && other.misfit.shown_ratio < kHiddenRivalRatio * best.misfit.shown_ratio;
     if (no_rival && worse < options_.ambiguity_ratio) continue;
     const bool same_path = other.flip == best.flip &&
                            symmetry.maps_onto_itself(best.scan_from_cad.inverse() * other.scan_from_cad);
@@ -446,11 +378,13 @@ CoarseAlignment CoarseSearch::from_nothing() {
   }
   take(found.front());
   if (refuse_wrong_hand(found)) return result_;
-  if (!fits(found, kFitsCapRatio) && !fits_where_seen(found.front())) {
+  const auto fits = [&] { return fitness_.fits(found.front()) || fitness_.fits_where_seen(found.front()); };
+  if (!fits()) {
     found = all_sharpened(std::move(found));
     take(found.front());
   }
-  if (!fits_at_last(found)) {  // then every pose is about as bad as another
+  // Else every pose is about as bad as another.
+  if (!fits() && !fitness_.confirmed_by_others(found.front())) {
     refuse_no_fit(found.front());
     return result_;
   }
