@@ -2,7 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <array>
-#include <cmath>
+
+#include "registration/carried_contour.hpp"
+#include "registration/edge_strips.hpp"
 
 namespace arris {
 namespace {

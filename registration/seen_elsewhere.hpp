@@ -4,10 +4,10 @@
 #include <functional>
 #include <vector>
 
-#include "registration/carried_contour.hpp"
-#include "registration/edge_strips.hpp"
-
 namespace arris {
+
+class EdgeStrips;
+struct ContourStation;
 
 /// Edges that seem missing may lie elsewhere.
 struct SeenElsewhere {
