@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "registration/surface_factor.hpp"
 
@@ -53,8 +54,7 @@ class SiteMarginals {
       fit_mm_[i] = site.inside_mm + fit.dot(site.row, move);
       in_fit_.push_back(site.message);
     }
-    factor.solve_lower(columns);
-    spread_mm2_ = columns.transpose() * columns;
+    spread_mm2_ = factor.spread(std::move(columns));
     mean_mm = fit_mm_;
     variance_mm2 = spread_mm2_.diagonal();
   }

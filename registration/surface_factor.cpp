@@ -15,6 +15,7 @@ constexpr std::size_t kTileNodes = 16;
 SurfaceFactor::SurfaceFactor(const SurfaceSystem& system) {
   fill(system);
   factorise();
+  if (system.taken.cols() > 0 && usable_) take(system.taken);
 }
 
 void SurfaceFactor::fill(const SurfaceSystem& system) {
@@ -63,6 +64,20 @@ void SurfaceFactor::factorise() {
   }
 }
 
+/// (A - T T')^-1 = A^-1 + A^-1 T (1 - T' A^-1 T)^-1 T' A^-1; the determinants' ratio is that of 1 - T' A^-1
+/// T.
+void SurfaceFactor::take(const Eigen::MatrixXd& columns) {
+  taken_ = columns;
+  solve_lower_from(0, taken_);
+  solve_upper_down_to(0, taken_);
+  const Eigen::Index count = columns.cols();
+  const Eigen::LLT<Eigen::MatrixXd> left(Eigen::MatrixXd::Identity(count, count) -
+                                         columns.transpose() * taken_);
+  usable_ = left.info() == Eigen::Success;
+  log_taken_ = 2.0 * left.matrixLLT().diagonal().array().log().sum();
+  left.matrixL().transpose().solveInPlace<Eigen::OnTheRight>(taken_);
+}
+
 void SurfaceFactor::solve_lower_from(std::size_t from, Eigen::Ref<Eigen::MatrixXd> columns) const {
   for (std::size_t i = from; i < rows_.size(); ++i) {
     const TileRow& row = rows_[i];
@@ -83,16 +98,27 @@ void SurfaceFactor::solve_upper_down_to(std::size_t to, Eigen::Ref<Eigen::Matrix
   }
 }
 
-void SurfaceFactor::solve_lower(Eigen::Ref<Eigen::MatrixXd> columns) const {
-  if (columns.cols() == 0) return;  // Eigen would take the address of what is not there
+Eigen::MatrixXd SurfaceFactor::spread(Eigen::MatrixXd columns) const {
+  if (columns.cols() == 0) return {};  // Eigen would take the address of what is not there
+  const Eigen::MatrixXd taken = taken_.transpose() * columns;
   solve_lower_from(0, columns);
+  Eigen::MatrixXd sum = columns.transpose() * columns;
+  if (taken.rows() > 0) sum += taken.transpose() * taken;
+  return sum;
 }
 
 Eigen::VectorXd SurfaceFactor::solve(const Eigen::VectorXd& right) const {
   Eigen::MatrixXd column = right;
   solve_lower_from(0, column);
   solve_upper_down_to(0, column);
+  if (taken_.cols() > 0) column += taken_ * (taken_.transpose() * right);
   return column;
+}
+
+double SurfaceFactor::log_determinant() const {
+  double sum = log_taken_;
+  for (const TileRow& row : rows_) sum += 2.0 * row.tiles.back().diagonal().array().log().sum();
+  return sum;
 }
 
 Eigen::MatrixXd SurfaceFactor::inverse(int threads) const {
@@ -105,7 +131,9 @@ Eigen::MatrixXd SurfaceFactor::inverse(int threads) const {
       solve_upper_down_to(j, columns);
     }
   });
-  return lower.selfadjointView<Eigen::Lower>();
+  Eigen::MatrixXd whole = lower.selfadjointView<Eigen::Lower>();
+  if (taken_.cols() > 0) whole += taken_ * taken_.transpose();
+  return whole;
 }
 
 }  // namespace arris

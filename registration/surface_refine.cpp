@@ -7,7 +7,8 @@
 
 #include "acquisition/geometry/evenly_drawn.hpp"
 #include "acquisition/geometry/parallel_for.hpp"
-#include "acquisition/types/error.hpp"
+#include "registration/bend_evidence.hpp"
+#include "registration/common_bend.hpp"
 #include "registration/common_height.hpp"
 #include "registration/common_strain.hpp"
 #include "registration/edge_strips.hpp"
@@ -40,6 +41,9 @@ constexpr double kMostSlopeNoiseRad = 7e-4, kWorthSlopeRad = 9e-4, kWorthSlopeNo
 constexpr double kBesideRatio = 1.2;  // of the least spacing: nodes beside contours
 constexpr double kStiffStrainRatio = 1e-5, kStiffBendPerMm = 1e-6;  // of a part that stays as it is drawn
 constexpr double kRigidMm = 0.015, kRigidSigmas = 0.3, kMostRigidSigmas = 1.3;
+// Bends gather at openings and supports: only a sheet whose bends scatter by less than the first share of
+// what is expected is taken to bend alike everywhere, and then by the second more than the evidence says.
+constexpr double kAlikeRatio = 0.25, kAlikeWiden = 2.0;
 constexpr double kUnknownThicknessWiden = 2.0;  // the mid-surface's strain is then not known
 constexpr int kMostAverages = 8;                // rounds of messages between points and edges
 constexpr int kMostElsewhere = 3;               // fits from where more of the edges would be seen
@@ -105,13 +109,14 @@ class SurfaceFitter {
   /// From few of the points to all: burrs, nodes, strays, the edges' mean, and what the fit may still owe.
   void finish() {
     const std::vector<std::size_t> one_of_each = levels();
+    see_whether_alike();
     for (std::size_t level = 1; level < one_of_each.size() && fit_.usable(); ++level) {
       take_points(one_of_each[level]);
       (void)call_burrs();  // before so many points pull the edge to them
       settle();
     }
     for (int pass = 0; pass < kBurrPasses && fit_.usable() && call_burrs(); ++pass) settle();
-    if (fit_.usable()) choose_nodes();
+    if (fit_.usable()) bends_alike_ ? follow_alike() : choose_nodes();
     for (int pass = 1; fit_.usable() && call_strays() && pass < kStrayPasses; ++pass) settle();
     if (fit_.usable()) {
       average_edges();
@@ -149,6 +154,7 @@ class SurfaceFitter {
     const double hidden_mm = std::max(kRigidMm, kRigidSigmas * scan_.noise_sigma_mm);
     if (fit_.sigma_mm > std::hypot(kMostRigidSigmas * scan_.noise_sigma_mm, hidden_mm)) return false;
     const SheetPrior soft = prior_;
+    stiff_ = true;
     prior_.strain_ratio = std::min(kStiffStrainRatio, soft.strain_ratio);
     prior_.bend_per_mm = std::min(kStiffBendPerMm, soft.bend_per_mm);
     settle();
@@ -156,6 +162,7 @@ class SurfaceFitter {
     const CommonHeight common(pairs_, fit_.basis->spacing_mm(), kGateSigmas * fit_.sigma_mm);
     if (fit_.usable() && common.mean_mm2() < hidden_mm * hidden_mm) return true;
     prior_ = soft;
+    stiff_ = false;
     return false;
   }
 
@@ -271,6 +278,42 @@ class SurfaceFitter {
     (void)call_burrs();
   }
 
+  /// A sheet that bends much alike everywhere is not allowed to bend otherwise by more than it shows: noise
+  /// that neighbouring points share looks like bends.
+  void see_whether_alike() {
+    bends_alike_ = false;
+    prior_.common_bend_per_mm.setZero();
+    if (stiff_ || !fit_.usable()) return;
+    prior_.bend_per_mm = options_.prior.bend_per_mm;
+    look();
+    unfollowed_mm_ =
+        unfollowed_mm(CommonHeight(pairs_, 0.5 * fit_.basis->spacing_mm(), kGateSigmas * fit_.sigma_mm));
+    const double ratio = scatter_ratio();
+    unfollowed_mm_ = kUnfollowedMm;
+    if (ratio > kAlikeRatio) return;
+    bends_alike_ = true;
+    prior_.bend_per_mm = std::min(1.0, kAlikeWiden * ratio) * options_.prior.bend_per_mm;
+    settle();
+  }
+
+  /// Closer nodes would follow noise.
+  void follow_alike() {
+    weigh_unfollowed();
+    prior_.bend_per_mm = std::min(1.0, kAlikeWiden * scatter_ratio()) * options_.prior.bend_per_mm;
+    settle();
+  }
+
+  /// How far the fit's bends scatter about their common one, over what the options expect.
+  [[nodiscard]] double scatter_ratio() const {
+    SheetPrior bends = prior_, others = prior_;
+    bends.strain_ratio = others.bend_per_mm = std::numeric_limits<double>::infinity();
+    bends.bend_per_mm = options_.prior.bend_per_mm;
+    bends.common_bend_per_mm = common_bend(bends).likeliest_per_mm();
+    FitParts parts{seen(), sheet_priors(others), sheet_priors(bends), common_bend(bends)};
+    add_weak_priors(parts.other_priors);
+    return likeliest_scatter_ratio(parts);
+  }
+
   /// Nodes closer together beside the contours, as long as that is worth it.
   void choose_nodes() {
     while (fit_.usable() && went_finer()) {
@@ -278,7 +321,6 @@ class SurfaceFitter {
     if (fit_.usable()) weigh_unfollowed();
   }
 
-  [[nodiscard]] bool bends() const { return prior_.bend_per_mm >= options_.prior.bend_per_mm; }
   [[nodiscard]] double finer_mm() const { return fit_.basis->spacing_mm() / kFinerFactor; }
   [[nodiscard]] bool enough_points_for(double spacing_mm) const {
     return static_cast<double>(fit_.pairs) * spacing_mm * spacing_mm >= kFewestPointsANode * ground_.area_mm2;
@@ -307,7 +349,7 @@ class SurfaceFitter {
   /// close enough.
   [[nodiscard]] double turn_worth_rad() const {
     constexpr double kNone = std::numeric_limits<double>::infinity();
-    if (!bends() || finer_mm() < kLeastNodesRatio * options_.node_spacing_mm) return kNone;
+    if (stiff_ || finer_mm() < kLeastNodesRatio * options_.node_spacing_mm) return kNone;
     const double noise_rad = slope_noise_rad(finer_mm());
     if (noise_rad > kMostSlopeNoiseRad) return kNone;
     return std::max(kWorthSlopeRad, kWorthSlopeNoises * noise_rad);
@@ -349,16 +391,20 @@ class SurfaceFitter {
   void weigh_unfollowed() {
     const double spacing_mm = fit_.basis->spacing_mm();
     const CommonHeight common(pairs_, 0.5 * spacing_mm, kGateSigmas * fit_.sigma_mm);
-    unfollowed_mm_ = std::max(std::sqrt(common.mean_mm2()),
-                              kUnfollowedMm * std::pow(spacing_mm / options_.node_spacing_mm, 2));
+    unfollowed_mm_ = unfollowed_mm(common);
     fit_.unfollowed_mm2 = common.excess_mm2(fit_.shift_mm.size(), unfollowed_mm_ * unfollowed_mm_);
     fit_.unfollowed_mean_mm2 = unfollowed_mm_ * unfollowed_mm_;
-    if (!bends())  // a stiff field's covariance does not know of it
+    if (stiff_)  // a stiff field's covariance does not know of it
       fit_.unfollowed_mm2.assign(fit_.shift_mm.size(), fit_.unfollowed_mean_mm2);
     settle();
   }
 
-  /// Partners, residuals and strips under the field as it is.
+  [[nodiscard]] double unfollowed_mm(const CommonHeight& common) const {
+    const double spacing_ratio = fit_.basis->spacing_mm() / options_.node_spacing_mm;
+    return std::max(std::sqrt(common.mean_mm2()), kUnfollowedMm * spacing_ratio * spacing_ratio);
+  }
+
+  /// Partners, residuals, strips and the bend that all share, under the field as it is.
   void look() {
     pair_surface(cad_, scan_, points_, fit_.scan_from_cad, *fit_.basis, fit_.shift_mm,
                  4.0 * options_.start_scale_mm + 10.0, options_.threads, pairs_);
@@ -367,6 +413,12 @@ class SurfaceFitter {
     fit_.pairs = static_cast<std::size_t>(
         std::count_if(pairs_.begin(), pairs_.end(), [](const SurfacePair& pair) { return pair.on_face; }));
     lay_strips(fit_.shift_mm);
+    if (bends_alike_) prior_.common_bend_per_mm = common_bend(prior_).likeliest_per_mm();
+  }
+
+  [[nodiscard]] CommonBend common_bend(const SheetPrior& prior) const {
+    return arris::common_bend(ground_.sheet, fit_.shift_mm, prior,
+                              static_cast<Eigen::Index>(3 * fit_.shift_mm.size() + fit_.offset_mm.size()));
   }
 
   void lay_strips(const std::vector<Eigen::Vector3d>& shift_mm, bool walls_count = true) {
@@ -396,17 +448,26 @@ class SurfaceFitter {
   }
 
   SurfaceSystem assemble() const {
-    const double sigma_mm = point_sigma_mm(), stray_ratio = strips_->stray_ratio();
-    SurfaceSystem system =
-        summed(pairs_.size(), [&](std::size_t begin, std::size_t end, SurfaceSystem& part) {
-          add_surface(pairs_, begin, end, sigma_mm, scale_mm_, part);
-          strips_->add(begin, end, fit_.offset_mm, tau_mm_, stray_ratio, part);
-        });
-    system += summed(ground_.sheet.size(), [&](std::size_t begin, std::size_t end, SurfaceSystem& part) {
-      for (std::size_t i = begin; i < end; ++i) ground_.sheet[i].add(fit_.shift_mm, prior_, part);
-    });
+    SurfaceSystem system = seen();
+    system += sheet_priors(prior_);
     add_weak_priors(system);
+    if (bends_alike_) common_bend(prior_).take_out_of(system);
     return system;
+  }
+
+  /// What the scan shows of the surface and the edges.
+  [[nodiscard]] SurfaceSystem seen() const {
+    const double sigma_mm = point_sigma_mm(), stray_ratio = strips_->stray_ratio();
+    return summed(pairs_.size(), [&](std::size_t begin, std::size_t end, SurfaceSystem& part) {
+      add_surface(pairs_, begin, end, sigma_mm, scale_mm_, part);
+      strips_->add(begin, end, fit_.offset_mm, tau_mm_, stray_ratio, part);
+    });
+  }
+
+  [[nodiscard]] SurfaceSystem sheet_priors(const SheetPrior& prior) const {
+    return summed(ground_.sheet.size(), [&](std::size_t begin, std::size_t end, SurfaceSystem& part) {
+      for (std::size_t i = begin; i < end; ++i) ground_.sheet[i].add(fit_.shift_mm, prior, part);
+    });
   }
 
   void add_weak_priors(SurfaceSystem& system) const {
@@ -466,26 +527,12 @@ class SurfaceFitter {
   std::vector<std::size_t> near_, points_;  // scan points near the contours, and those that take part
   std::vector<SurfacePair> pairs_;
   Eigen::MatrixXd doubt_mm2_;  // covariance of what may be owed to strays
+  bool stiff_ = false, bends_alike_ = false;
   double unfollowed_mm_ = kUnfollowedMm;
   double scale_mm_ = 10.0, tau_mm_ = kStartTauMm, strip_reach_mm_ = 20.0;
 };
 
 }  // namespace
-
-void SurfaceOptions::check() const {
-  const auto need = [](bool holds, const char* field, double value, const char* bound) {
-    if (!holds)
-      throw Error(Fault::kRecipe, std::string(field) + " = " + std::to_string(value) + ", need " + bound);
-  };
-  need(band_mm > 0.0, "registration.subdivision.band_mm", band_mm, "> 0");
-  need(node_spacing_mm >= 1.0, "registration.surface.node_spacing_mm", node_spacing_mm, ">= 1");
-  need(prior.strain_ratio > 0.0, "registration.surface.strain", prior.strain_ratio, "> 0");
-  need(prior.bend_per_mm > 0.0, "registration.surface.bend_per_mm", prior.bend_per_mm, "> 0");
-  need(edge_share_ratio > 0.0 && edge_share_ratio <= 1.0, "registration.surface.edge_share", edge_share_ratio,
-       "in (0, 1]");
-  need(offset_sd_mm > 0.0, "registration.surface.offset_sd_mm", offset_sd_mm, "> 0");
-  need(max_rounds >= 1, "registration.surface.max_rounds", max_rounds, ">= 1");
-}
 
 SurfaceFit refine_surface(const CadModel& cad, const ScanModel& scan, const RigidMotion& rigid_scan_from_cad,
                           const SurfaceOptions& options) {

@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "registration/symmetric_modes.hpp"
+
 namespace arris {
 namespace {
 
@@ -62,6 +64,7 @@ SheetCell::Terms SheetCell::terms(const std::vector<Eigen::Vector3d>& shift_mm,
                                                inverse(1, 0) * f[0] + inverse(1, 1) * f[1]};
   const double share = area_mm2_ / (prior.patch_mm * prior.patch_mm);
   const double half_mm = 0.5 * prior.thickness_mm;
+  const Eigen::Vector3d common = in_frame(prior.common_bend_per_mm, row_);
   Terms of;
   of.derivative.resize(row_.node.size());
   for (std::size_t k = 0; k < 3; ++k) {
@@ -78,6 +81,7 @@ SheetCell::Terms SheetCell::terms(const std::vector<Eigen::Vector3d>& shift_mm,
       of.derivative[j].col(bend) = (w[second] - gamma1 * d[0] - gamma2 * d[1]) * shape.normal;
       of.derivative[j].col(strain) = 0.5 * (d[a] * f[b] + d[b] * f[a]) + half_mm * of.derivative[j].col(bend);
     }
+    of.residual[bend] -= common[static_cast<Eigen::Index>(k)];
     of.weight[strain] = kMultiplicity[k] * share / (prior.strain_ratio * prior.strain_ratio);
     of.weight[bend] = kMultiplicity[k] * share / (prior.bend_per_mm * prior.bend_per_mm);
   }
@@ -88,19 +92,6 @@ void SheetCell::add(const std::vector<Eigen::Vector3d>& shift_mm, const SheetPri
                     SurfaceSystem& system) const {
   const Terms of = terms(shift_mm, prior);
   system.add(row_.node, of.derivative, of.weight.cwiseProduct(of.residual), of.weight);
-}
-
-void SheetCell::add_pull(const std::vector<Eigen::Vector3d>& shift_mm, const SheetPrior& prior,
-                         std::span<const Eigen::Matrix3d> strain, Eigen::Ref<Eigen::MatrixXd> columns) const {
-  const Terms of = terms(shift_mm, prior);
-  for (std::size_t column = 0; column < strain.size(); ++column) {
-    const Eigen::Matrix3d& e = strain[column];
-    const Eigen::Vector3d here(row_.t1.dot(e * row_.t1), row_.t1.dot(e * row_.t2), row_.t2.dot(e * row_.t2));
-    const Eigen::Vector3d pull = of.weight.head<3>().cwiseProduct(here);
-    for (std::size_t j = 0; j < row_.node.size(); ++j)
-      columns.col(static_cast<Eigen::Index>(column)).segment<3>(3 * row_.node[j]) +=
-          of.derivative[j].leftCols<3>() * pull;
-  }
 }
 
 }  // namespace arris

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <span>
 #include <vector>
 
 #include "registration/surface_basis.hpp"
@@ -23,9 +22,10 @@ struct LocalShape {
 /// How stiff the sheet is taken to be.
 struct SheetPrior {
   double strain_ratio = 3e-4;  ///< expected in-surface strain of the mid-surface
-  double bend_per_mm = 3e-4;   ///< expected change of curvature
-  double thickness_mm = 0.0;   ///< of the sheet; the mid-surface lies half of it below the CAD's face
-  double patch_mm = 50.0;      ///< the priors count once a square of this edge
+  double bend_per_mm = 3e-4;   ///< expected change of curvature, but for that which all of the sheet shares:
+  Eigen::Matrix3d common_bend_per_mm = Eigen::Matrix3d::Zero();  ///< CAD frame
+  double thickness_mm = 0.0;  ///< of the sheet; the mid-surface lies half of it below the CAD's face
+  double patch_mm = 50.0;     ///< the priors count once a square of this edge
 };
 
 /// Green's strain of the mid-surface and change of curvature of one cell, with their derivatives:
@@ -41,22 +41,17 @@ class SheetCell {
   [[nodiscard]] const BasisRow& row() const { return row_; }
   void add(const std::vector<Eigen::Vector3d>& shift_mm, const SheetPrior& prior,
            SurfaceSystem& system) const;
-  /// Adds to each column (3 a node) how the priors pull were the mid-surface strained by strain[column]
-  /// (symmetric, CAD frame) as it is drawn.
-  void add_pull(const std::vector<Eigen::Vector3d>& shift_mm, const SheetPrior& prior,
-                std::span<const Eigen::Matrix3d> strain, Eigen::Ref<Eigen::MatrixXd> columns) const;
-  /// Strain of the mid-surface, components 11, 12, 22.
-  [[nodiscard]] Eigen::Vector3d mid_strain(const std::vector<Eigen::Vector3d>& shift_mm,
-                                           double thickness_mm) const;
-
- private:
-  /// Strains 11, 12, 22, then bends.
+  /// Strains 11, 12, 22, then bends less the common one.
   struct Terms {
     std::vector<Eigen::Matrix<double, 3, SurfaceSystem::kTogether>> derivative;  // of each node
     SurfaceSystem::Residuals residual, weight;
   };
   [[nodiscard]] Terms terms(const std::vector<Eigen::Vector3d>& shift_mm, const SheetPrior& prior) const;
+  /// Strain of the mid-surface, components 11, 12, 22.
+  [[nodiscard]] Eigen::Vector3d mid_strain(const std::vector<Eigen::Vector3d>& shift_mm,
+                                           double thickness_mm) const;
 
+ private:
   BasisRow row_;
   std::array<Eigen::Vector3d, 3> second_;  // x,11 x,12 x,22 of the CAD
   double area_mm2_ = 0.0;

@@ -70,15 +70,16 @@ Eigen::MatrixXd SurfaceSystem::dense() const {
       lower.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b)) = block(a, b);
   lower.bottomLeftCorner(border.rows(), border.cols()) = border;
   lower.diagonal().tail(corner.size()) = corner;
-  return lower.selfadjointView<Eigen::Lower>();
+  Eigen::MatrixXd whole = lower.selfadjointView<Eigen::Lower>();
+  if (taken.cols() > 0) whole -= taken * taken.transpose();
+  return whole;
 }
 
-SurfaceSystem& SurfaceSystem::operator+=(const SurfaceSystem& other) {
-  for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i] += other.blocks[i];
-  border += other.border;
-  corner += other.corner;
-  gradient += other.gradient;
-  return *this;
+void SurfaceSystem::add(const SurfaceSystem& other, double times) {
+  for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i] += times * other.blocks[i];
+  border += times * other.border;
+  corner += times * other.corner;
+  gradient += times * other.gradient;
 }
 
 SurfaceSystem& SurfaceSystem::operator+=(const AlongSums& sums) {

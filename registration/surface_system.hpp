@@ -40,9 +40,14 @@ struct SurfaceSystem {
   /// J x, and M J' of a symmetric matrix; they cost the row's nodes, not all unknowns.
   [[nodiscard]] double dot(const Row& row, const Eigen::VectorXd& x) const;
   [[nodiscard]] Eigen::VectorXd times(const Eigen::MatrixXd& symmetric, const Row& row) const;
-  /// The whole information, both triangles.
+  /// The whole information, both triangles, less what is taken.
   [[nodiscard]] Eigen::MatrixXd dense() const;
-  SurfaceSystem& operator+=(const SurfaceSystem& other);
+  /// Adds a system from which nothing is taken, as if all of its residuals weighed so many times as much.
+  void add(const SurfaceSystem& other, double times);
+  SurfaceSystem& operator+=(const SurfaceSystem& other) {
+    add(other, 1.0);
+    return *this;
+  }
   SurfaceSystem& operator+=(const class AlongSums& sums);
 
   using Block = Eigen::Map<Eigen::Matrix3d>;
@@ -61,6 +66,8 @@ struct SurfaceSystem {
   Eigen::MatrixXd border;      ///< offsets x 3 nodes
   Eigen::VectorXd corner;      ///< of the offsets, which share no residual
   Eigen::VectorXd gradient;
+  /// Columns that are no unknowns any more took this times its transpose from the information above.
+  Eigen::MatrixXd taken;
 };
 
 /// Sums of many rows whose directions are weight[k] * direction, all of one direction: their blocks are

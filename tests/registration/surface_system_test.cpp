@@ -157,9 +157,42 @@ TEST(SurfaceFactor, SolvesAndInvertsAsADenseFactorDoes) {
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(sum.information.rows(), sum.information.cols());
   const Eigen::MatrixXd inverse = dense.solve(identity);
   EXPECT_LT((factor.inverse(1) - inverse).norm(), 1e-10 * inverse.norm());
-  Eigen::MatrixXd columns = sum.information.leftCols(5);
-  factor.solve_lower(columns);
-  EXPECT_LT((columns.transpose() * columns - sum.information.topLeftCorner(5, 5)).norm(), 1e-9);
+  EXPECT_LT((factor.spread(sum.information.leftCols(5)) - sum.information.topLeftCorner(5, 5)).norm(), 1e-9);
+}
+
+TEST(SurfaceFactor, OfASystemFromWhichColumnsAreTakenIsThatOfWhatIsLeft) {
+  Sum sum(6);
+  Random random(8);
+  sum.system.taken = Eigen::MatrixXd(sum.gradient.size(), 3);
+  for (double& x : sum.system.taken.reshaped()) x = 0.02 * random.normal();
+  const Eigen::MatrixXd left = sum.information - sum.system.taken * sum.system.taken.transpose();
+  EXPECT_LT((sum.system.dense() - left).norm(), 1e-12 * left.norm());
+  const SurfaceFactor factor(sum.system);
+  ASSERT_TRUE(factor.usable());
+  const Eigen::LLT<Eigen::MatrixXd> dense(left);
+  ASSERT_EQ(dense.info(), Eigen::Success);
+  const Eigen::MatrixXd inverse = dense.solve(Eigen::MatrixXd::Identity(left.rows(), left.cols()));
+  EXPECT_GT((inverse - Eigen::MatrixXd(sum.information.inverse())).norm(), 1e-3 * inverse.norm());
+  EXPECT_LT((factor.solve(sum.gradient) - inverse * sum.gradient).norm(), 1e-9 * sum.gradient.norm());
+  EXPECT_LT((factor.inverse(1) - inverse).norm(), 1e-9 * inverse.norm());
+  EXPECT_LT((factor.spread(left.leftCols(5)) - left.topLeftCorner(5, 5)).norm(), 1e-8);
+  EXPECT_NEAR(factor.log_determinant(), 2.0 * dense.matrixLLT().diagonal().array().log().sum(), 1e-8);
+}
+
+TEST(SurfaceFactor, SaysWhenMoreIsTakenThanThereIs) {
+  Sum sum(6);
+  sum.system.taken = Eigen::VectorXd::Constant(sum.gradient.size(), 1e3);
+  EXPECT_FALSE(SurfaceFactor(sum.system).usable());
+}
+
+TEST(SurfaceSystem, AddsAnotherAsIfItWeighedMore) {
+  Sum sum(7);
+  const SurfaceSystem other = Sum(8).system;
+  const Eigen::MatrixXd wanted = sum.information + 2.5 * other.dense();
+  const Eigen::VectorXd gradient = sum.gradient + 2.5 * other.gradient;
+  sum.system.add(other, 2.5);
+  EXPECT_LT((sum.system.dense() - wanted).norm(), 1e-12 * wanted.norm());
+  EXPECT_LT((sum.system.gradient - gradient).norm(), 1e-12 * gradient.norm());
 }
 
 TEST(SurfaceFactor, GivesTheSameBytesForAnyNumberOfThreads) {
