@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -23,6 +24,13 @@ struct BasisRow {
   std::vector<Weights> weight;     ///< one a node; 1/mm and 1/mm^2 for slopes and second derivatives
 
   [[nodiscard]] bool usable() const { return !node.empty(); }
+  /// The node of most weight.
+  [[nodiscard]] std::size_t nearest() const {
+    const auto heaviest =
+        std::max_element(weight.begin(), weight.end(),
+                         [](const Weights& a, const Weights& b) { return a[kValue] < b[kValue]; });
+    return static_cast<std::size_t>(node[static_cast<std::size_t>(heaviest - weight.begin())]);
+  }
   /// sum over the nodes of weight[which] * value.
   [[nodiscard]] Eigen::Vector3d combine(int which, const std::vector<Eigen::Vector3d>& values) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();

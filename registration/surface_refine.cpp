@@ -44,6 +44,7 @@ constexpr double kRigidMm = 0.015, kRigidSigmas = 0.3, kMostRigidSigmas = 1.3;
 // Bends gather at openings and supports: only a sheet whose bends scatter by less than the first share of
 // what is expected is taken to bend alike everywhere, and then by the second more than the evidence says.
 constexpr double kAlikeRatio = 0.25, kAlikeWiden = 2.0;
+constexpr double kShownRatio = 0.3;             // of the points that a node has on average
 constexpr double kUnknownThicknessWiden = 2.0;  // the mid-surface's strain is then not known
 constexpr int kMostAverages = 8;                // rounds of messages between points and edges
 constexpr int kMostElsewhere = 3;               // fits from where more of the edges would be seen
@@ -284,29 +285,43 @@ class SurfaceFitter {
     bends_alike_ = false;
     prior_.common_bend_per_mm.setZero();
     if (stiff_ || !fit_.usable()) return;
-    prior_.bend_per_mm = options_.prior.bend_per_mm;
+    prior_.bend_per_mm = prior_.unseen_bend_per_mm = options_.prior.bend_per_mm;
     look();
+    mark_seen();
     unfollowed_mm_ =
         unfollowed_mm(CommonHeight(pairs_, 0.5 * fit_.basis->spacing_mm(), kGateSigmas * fit_.sigma_mm));
     const double ratio = scatter_ratio();
     unfollowed_mm_ = kUnfollowedMm;
-    if (ratio > kAlikeRatio) return;
+    if (ratio <= kAlikeRatio) bend_alike(ratio);
+  }
+
+  void bend_alike(double scatter_ratio) {
     bends_alike_ = true;
-    prior_.bend_per_mm = std::min(1.0, kAlikeWiden * ratio) * options_.prior.bend_per_mm;
+    prior_.bend_per_mm = std::min(1.0, kAlikeWiden * scatter_ratio) * options_.prior.bend_per_mm;
     settle();
+  }
+
+  /// What the scan does not show may bend by as much as was expected: nothing says that it bends alike too.
+  void mark_seen() {
+    std::vector<std::size_t> points(fit_.basis->size(), 0);
+    for (const SurfacePair& pair : pairs_)
+      if (pair.on_face) ++points[pair.row.nearest()];
+    const double even = static_cast<double>(fit_.pairs) / static_cast<double>(points.size());
+    for (SheetCell& cell : ground_.sheet)
+      cell.set_seen(static_cast<double>(points[cell.row().nearest()]) >= kShownRatio * even);
   }
 
   /// Closer nodes would follow noise.
   void follow_alike() {
     weigh_unfollowed();
-    prior_.bend_per_mm = std::min(1.0, kAlikeWiden * scatter_ratio()) * options_.prior.bend_per_mm;
-    settle();
+    bend_alike(scatter_ratio());
   }
 
   /// How far the fit's bends scatter about their common one, over what the options expect.
   [[nodiscard]] double scatter_ratio() const {
     SheetPrior bends = prior_, others = prior_;
-    bends.strain_ratio = others.bend_per_mm = std::numeric_limits<double>::infinity();
+    bends.strain_ratio = bends.unseen_bend_per_mm = others.bend_per_mm =
+        std::numeric_limits<double>::infinity();
     bends.bend_per_mm = options_.prior.bend_per_mm;
     bends.common_bend_per_mm = common_bend(bends).likeliest_per_mm();
     FitParts parts{seen(), sheet_priors(others), sheet_priors(bends), common_bend(bends)};

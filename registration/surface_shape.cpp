@@ -64,6 +64,7 @@ SheetCell::Terms SheetCell::terms(const std::vector<Eigen::Vector3d>& shift_mm,
                                                inverse(1, 0) * f[0] + inverse(1, 1) * f[1]};
   const double share = area_mm2_ / (prior.patch_mm * prior.patch_mm);
   const double half_mm = 0.5 * prior.thickness_mm;
+  const double bend_per_mm = seen_ ? prior.bend_per_mm : prior.unseen_bend_per_mm;
   const Eigen::Vector3d common = in_frame(prior.common_bend_per_mm, row_);
   Terms of;
   of.derivative.resize(row_.node.size());
@@ -83,7 +84,7 @@ SheetCell::Terms SheetCell::terms(const std::vector<Eigen::Vector3d>& shift_mm,
     }
     of.residual[bend] -= common[static_cast<Eigen::Index>(k)];
     of.weight[strain] = kMultiplicity[k] * share / (prior.strain_ratio * prior.strain_ratio);
-    of.weight[bend] = kMultiplicity[k] * share / (prior.bend_per_mm * prior.bend_per_mm);
+    of.weight[bend] = kMultiplicity[k] * share / (bend_per_mm * bend_per_mm);
   }
   return of;
 }

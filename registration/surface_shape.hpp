@@ -24,8 +24,9 @@ struct SheetPrior {
   double strain_ratio = 3e-4;  ///< expected in-surface strain of the mid-surface
   double bend_per_mm = 3e-4;   ///< expected change of curvature, but for that which all of the sheet shares:
   Eigen::Matrix3d common_bend_per_mm = Eigen::Matrix3d::Zero();  ///< CAD frame
-  double thickness_mm = 0.0;  ///< of the sheet; the mid-surface lies half of it below the CAD's face
-  double patch_mm = 50.0;     ///< the priors count once a square of this edge
+  double unseen_bend_per_mm = 3e-4;  ///< the same as bend_per_mm, of cells that the scan does not show
+  double thickness_mm = 0.0;         ///< of the sheet; the mid-surface lies half of it below the CAD's face
+  double patch_mm = 50.0;            ///< the priors count once a square of this edge
 };
 
 /// Green's strain of the mid-surface and change of curvature of one cell, with their derivatives:
@@ -39,6 +40,7 @@ class SheetCell {
   SheetCell(const SurfaceCell& cell, const SurfaceBasis& basis);
   [[nodiscard]] bool usable() const { return row_.usable(); }
   [[nodiscard]] const BasisRow& row() const { return row_; }
+  void set_seen(bool seen) { seen_ = seen; }
   void add(const std::vector<Eigen::Vector3d>& shift_mm, const SheetPrior& prior,
            SurfaceSystem& system) const;
   /// Strains 11, 12, 22, then bends less the common one.
@@ -55,6 +57,7 @@ class SheetCell {
   BasisRow row_;
   std::array<Eigen::Vector3d, 3> second_;  // x,11 x,12 x,22 of the CAD
   double area_mm2_ = 0.0;
+  bool seen_ = true;
 };
 
 }  // namespace arris
