@@ -335,7 +335,8 @@ std::vector<Key> surface_keys(Recipe::Surface& s) {
        .max = 0.1},
       {.name = "registration.surface.bend_per_mm",
        .slot = &s.bend_per_mm,
-       .about = "expected change of the surface's curvature, 1/mm",
+       .about = "expected change of the surface's curvature, 1/mm; of a part that bends alike everywhere, "
+                "less by itself",
        .min = 1e-7,
        .max = 0.1},
       {.name = "registration.surface.offset_sd_mm",
