@@ -49,13 +49,19 @@ std::vector<std::pair<std::string, SpecialRows>> special_rows() {
           {"far", far_rows}, {"bound", bound_rows}, {"time", time_rows}};
 }
 
-/// A misspelt word would measure nothing.
-void check_only(const std::string& only) {
-  std::vector<std::string> known = {"", "times", "pictures"};
+const std::vector<std::string> kParts = {"porthole", "nosecone", "sheet", "bracket", "duct"};
+
+std::vector<std::string> case_words() {
+  std::vector<std::string> known = {"times", "pictures"};
   for (const auto& [word, rows] : special_rows()) known.push_back(word);
   for (const BenchCase& one : bench_cases()) known.push_back(one.word);
-  if (std::find(known.begin(), known.end(), only) == known.end())
-    throw arris::Error(arris::Fault::kUsage, "no case " + only + "\n" + kUsage);
+  return known;
+}
+
+/// A misspelt word would measure nothing.
+void check(const std::string& what, const std::string& word, const std::vector<std::string>& known) {
+  if (!word.empty() && std::find(known.begin(), known.end(), word) == known.end())
+    throw arris::Error(arris::Fault::kUsage, "no " + what + " " + word + "\n" + kUsage);
 }
 
 Arguments parse(int argc, char** argv) {
@@ -68,7 +74,8 @@ Arguments parse(int argc, char** argv) {
   arguments.images = words.text("--images");
   arguments.part = words.text("--part");
   arguments.only = words.text("--only");
-  check_only(arguments.only);
+  check("part", arguments.part, kParts);
+  check("case", arguments.only, case_words());
   arguments.seeds = words.count("--seeds", 20, 1);
   arguments.rounds = words.count("--rounds", 15, 0);
   arguments.threads = words.count("--threads", 2, 1);
@@ -113,7 +120,7 @@ struct Measured {
 
 Measured measure_parts(const Arguments& arguments) {
   Measured measured;
-  for (const std::string name : {"porthole", "nosecone", "sheet", "bracket", "duct"}) {
+  for (const std::string& name : kParts) {
     if (!arguments.part.empty() && arguments.part != name) continue;
     const BenchPart part(arguments.fixtures / name, 1);
     for (const BenchCase& bench_case : bench_cases())
