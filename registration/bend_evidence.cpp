@@ -8,7 +8,8 @@
 namespace arris {
 namespace {
 
-constexpr double kStep = 1.5, kLeastRatio = 0.01;
+constexpr double kStep = 1.5;
+constexpr int kMostSteps = 11;  // to a hundredth
 
 /// Logarithm of the probability of the scan, up to a constant: of the fit's quadratic form over all fields,
 /// against that of the priors alone.
@@ -30,14 +31,14 @@ double log_evidence(const FitParts& parts, double scatter_ratio) {
 }  // namespace
 
 double likeliest_scatter_ratio(const FitParts& parts) {
-  double best = 1.0, evidence = log_evidence(parts, best);
-  for (double ratio = best / kStep; ratio >= kLeastRatio; ratio /= kStep) {
-    const double here = log_evidence(parts, ratio);
+  double ratio = 1.0, evidence = log_evidence(parts, ratio);
+  for (int step = 0; step < kMostSteps; ++step) {
+    const double here = log_evidence(parts, ratio / kStep);
     if (!(here > evidence)) break;
-    best = ratio;
+    ratio /= kStep;
     evidence = here;
   }
-  return best;
+  return ratio;
 }
 
 }  // namespace arris

@@ -74,24 +74,43 @@ TEST(SurfaceField, DoesNotInventADeformation) {
   EXPECT_LT(most_over_limit, 1.5);
 }
 
-TEST(SurfaceField, CarriesAPatchThatWasNotScannedByTheStiffnessOfTheSheet) {
-  const PlatePart part(bent(2e-4));
-  const CadModel cad = scenes::cad_of(part);
-  Trial trial = scenes::ideal_trial(part, {}, 5);
-  const Eigen::Vector3d hole = trial.true_curve_mm[trial.true_curve_mm.size() / 3];
-  ScanModel& scan = trial.scan;
+/// Takes what lies within reach_mm of a place out of a scan.
+void cut_out(ScanModel& scan, const Eigen::Vector3d& place_mm, double reach_mm) {
   std::vector<Eigen::Vector3d> points, normals;
   for (std::size_t i = 0; i < scan.points_mm.size(); ++i)
-    if ((scan.points_mm[i] - hole).norm() > 35.0) {
+    if ((scan.points_mm[i] - place_mm).norm() > reach_mm) {
       points.push_back(scan.points_mm[i]);
       normals.push_back(scan.normals[i]);
     }
   scan.points_mm = points;
   scan.normals = normals;
   scan.tree = NearestPoints(scan.points_mm);
+}
+
+TEST(SurfaceField, CarriesAPatchThatWasNotScannedByTheStiffnessOfTheSheet) {
+  const PlatePart part(bent(2e-4));
+  const CadModel cad = scenes::cad_of(part);
+  Trial trial = scenes::ideal_trial(part, {}, 5);
+  cut_out(trial.scan, trial.true_curve_mm[trial.true_curve_mm.size() / 3], 35.0);
   const SurfaceField field = fitted(cad, trial, options_for(part), RigidMotion::Identity());
   const scenes::Distance error = error_of(cad, trial, field);
   EXPECT_LT(error.max_mm, 1.5 * trial.edge_limit_mm);
+}
+
+/// A sheet that bends alike where the scan shows it is not known to do so where it does not.
+TEST(SurfaceField, StatesThatWhatWasNotScannedMayBendAsWasExpected) {
+  const PlatePart part(bent(2e-4));
+  const CadModel cad = scenes::cad_of(part);
+  const synthetic::EdgePoint edge = part.edge(0, 10.0)[4];
+  Trial trial = scenes::ideal_trial(part, {.points = 20000}, 6);
+  cut_out(trial.scan, edge.true_mm, 60.0);
+  const auto sd_mm = [&](double bend_per_mm) {
+    SurfaceOptions options = options_for(part);
+    options.prior.bend_per_mm = bend_per_mm;
+    return fitted(cad, trial, options, RigidMotion::Identity()).map(edge.nominal_mm).sd_mm.x();
+  };
+  EXPECT_GT(sd_mm(3e-3), 2.0 * sd_mm(3e-4));
+  EXPECT_GT(sd_mm(3e-4), 0.03);
 }
 
 TEST(SurfaceField, AHoleThatIsTooLargeIsFollowedAndItsSizeReported) {
