@@ -66,6 +66,7 @@ class SurfaceFitter {
     SurfaceFit most = fit_;
     for (int more = 0; more < kMostElsewhere && !fit_.elsewhere.by_mm.isZero(); ++more) {
       problem_.take_points(problem_.levels().front());
+      expect_any_bends();
       for (Eigen::Vector3d& shift : fit_.shift_mm) shift += fit_.elsewhere.by_mm;
       problem_.look_coarsely();
       problem_.settle();
@@ -159,16 +160,21 @@ class SurfaceFitter {
   /// A sheet that bends much alike everywhere is not allowed to bend otherwise by more than it shows: noise
   /// that neighbouring points share looks like bends.
   void see_whether_alike() {
-    problem_.bends_alike = false;
-    problem_.prior.common_bend_per_mm.setZero();
     if (stiff_ || !fit_.usable()) return;
-    problem_.prior.bend_per_mm = problem_.prior.unseen_bend_per_mm = options_.prior.bend_per_mm;
+    expect_any_bends();
     problem_.look();
     problem_.mark_seen();
+    const double unfollowed_mm = problem_.unfollowed_mm;
     problem_.unfollowed_mm = problem_.shared_height_mm(problem_.common_height());
     const double ratio = problem_.scatter_ratio();
-    problem_.unfollowed_mm = SurfaceProblem::kUnfollowedMm;
+    problem_.unfollowed_mm = unfollowed_mm;
     if (ratio <= kAlikeRatio) bend_alike(ratio);
+  }
+
+  void expect_any_bends() {
+    problem_.bends_alike = false;
+    problem_.prior.common_bend_per_mm.setZero();
+    if (!stiff_) problem_.prior.bend_per_mm = problem_.prior.unseen_bend_per_mm = options_.prior.bend_per_mm;
   }
 
   void bend_alike(double scatter_ratio) {
