@@ -14,12 +14,12 @@ namespace {
 
 constexpr double kAnneal = 0.6;
 constexpr double kStartTauMm = 2.0, kTauShrink = 0.6;
-constexpr double kFollowedTaus = 0.3;  // a round that moves the edge by more has not followed it yet
-constexpr int kMostHeld = 8;           // rounds at one tau
-constexpr std::size_t kFewestPointsANode = 8, kLevelFactor = 4;  // of the first rounds of a dense scan
-constexpr double kGaugeMm = 50.0;       // weak pull to the rigid start, for motions that nothing else holds
-constexpr double kProximalMm = 5.0;     // a round's moves along such motions stay small
-constexpr double kLeastSigmaMm = 0.02;  // the drawing's own facets
+constexpr double kFollowedTaus = 0.3;    // a round that moves the edge by more has not followed it yet
+constexpr int kMostHeld = 8;             // rounds at one tau
+constexpr std::size_t kLevelFactor = 4;  // of the points of a dense scan, from one level to the next
+constexpr double kGaugeMm = 50.0;        // weak pull to the rigid start, for motions that nothing else holds
+constexpr double kProximalMm = 5.0;      // a round's moves along such motions stay small
+constexpr double kLeastSigmaMm = 0.02;   // the drawing's own facets
 constexpr double kSettledMm = 1e-3, kSettledEdgeLimits = 0.01;  // moves of a round that no longer matter
 constexpr double kShownRatio = 0.3;                             // of the points that a node has on average
 constexpr double kUnknownThicknessWiden = 2.0;                  // the mid-surface's strain is then not known

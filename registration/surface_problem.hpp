@@ -19,6 +19,7 @@ namespace arris {
 class SurfaceProblem {
  public:
   static constexpr double kUnfollowedMm = 0.008;  ///< of a bent surface, by nodes 30 mm apart: height
+  static constexpr std::size_t kFewestPointsANode = 8;
   static constexpr double kScaleSigmas = 4.0, kGateSigmas = 4.0;
 
   /// All must outlive this.
@@ -73,7 +74,7 @@ class SurfaceProblem {
   std::vector<SurfacePair> pairs;
   bool bends_alike = false;  ///< about a common bend, which is taken out of the equations
   double unfollowed_mm = kUnfollowedMm;
-  double scale_mm = 10.0, tau_mm = 2.0;  ///< of the points' weights; of the edges' support
+  double scale_mm = 0.0, tau_mm = 0.0;  ///< of the points' weights; of the edges' support
 
  private:
   void lay_out_strips(std::size_t one_of);

@@ -1,5 +1,6 @@
 #include "registration/surface_refine.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -15,7 +16,6 @@ namespace {
 
 constexpr int kStrayPasses = 5, kBurrPasses = 4;
 constexpr double kClaimsNearMm = 150.0;  // strays that hold one place of an edge together
-constexpr std::size_t kFewestPointsANode = 8;
 constexpr double kFinerFactor = 1.5, kShapeCellRatio = 0.67;               // of the node spacing
 constexpr double kWorthMm = 0.002, kWorthSigmas = 1.0, kWorthRatio = 0.5;  // of a shape left, to follow it
 constexpr double kLeastNodesRatio = 0.4;  // of the spacing asked for: no closer to turn edges
@@ -200,7 +200,7 @@ class SurfaceFitter {
 
   [[nodiscard]] bool enough_points_for(double spacing_mm) const {
     return static_cast<double>(fit_.pairs) * spacing_mm * spacing_mm >=
-           kFewestPointsANode * problem_.ground.area_mm2;
+           SurfaceProblem::kFewestPointsANode * problem_.ground.area_mm2;
   }
 
   /// True: nodes closer together follow a shape that was left, or turn the edges, and stay.

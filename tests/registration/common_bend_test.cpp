@@ -7,26 +7,14 @@
 
 #include "registration/bend_evidence.hpp"
 #include "registration/surface_factor.hpp"
-#include "registration/surface_ground.hpp"
 #include "registration/symmetric_modes.hpp"
-#include "tests/registration/scenes.hpp"
+#include "tests/registration/sheet_plate.hpp"
 
 namespace arris {
 namespace {
 
-/// A flat plate with an opening, its cells and nodes.
-struct Plate {
-  CadModel cad = scenes::cad_of(synthetic::PlatePart(synthetic::plate_with_rounded_rectangle()));
-  SurfaceGround ground = even_ground(cad, 60.0, 30.0);
-  SheetPrior prior;
-  std::vector<Eigen::Vector3d> unmoved{ground.basis->size(), Eigen::Vector3d::Zero()};
-
+struct Plate : scenes::SheetPlate {
   Eigen::Index unknowns() const { return static_cast<Eigen::Index>(3 * unmoved.size()); }
-  SurfaceSystem priors(const std::vector<Eigen::Vector3d>& shift_mm, const SheetPrior& of) const {
-    SurfaceSystem system(ground.basis->band(), 0);
-    for (const SheetCell& cell : ground.sheet) cell.add(shift_mm, of, system);
-    return system;
-  }
   /// Laid over a cylinder whose axis is at right angles to `across`.
   std::vector<Eigen::Vector3d> bent(const Eigen::Vector3d& across, double bend_per_mm) const {
     std::vector<Eigen::Vector3d> shift_mm;

@@ -5,23 +5,15 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "registration/surface_ground.hpp"
-#include "tests/registration/scenes.hpp"
+#include "tests/registration/sheet_plate.hpp"
 
 namespace arris {
 namespace {
 
-/// A flat plate with an opening that no point was seen of: the priors alone, a weak pull to its place, and
-/// what strain does to it.
-struct UnseenPlate {
-  CadModel cad = scenes::cad_of(synthetic::PlatePart(synthetic::plate_with_rounded_rectangle()));
-  SurfaceGround ground = even_ground(cad, 60.0, 30.0);
-  SheetPrior prior;
-  std::vector<Eigen::Vector3d> unmoved{ground.basis->size(), Eigen::Vector3d::Zero()};
-
+/// A plate that no point was seen of: the priors, a weak pull to its place, and what strain does to it.
+struct UnseenPlate : scenes::SheetPlate {
   Eigen::MatrixXd moves() const {
-    SurfaceSystem system(ground.basis->band(), 0);
-    for (const SheetCell& cell : ground.sheet) cell.add(unmoved, prior, system);
+    SurfaceSystem system = priors(unmoved, prior);
     system.add_to_nodes(1e-6);
     return moves_by_common_strain(ground.sheet, unmoved, prior, system.dense().inverse());
   }
@@ -53,8 +45,7 @@ TEST(CommonStrain, AnUnseenPlateStrainsAlikeEverywhereByThreeTimesItsPrior) {
 
 TEST(CommonStrain, WhatIsHeldDoesNotMove) {
   const UnseenPlate plate;
-  SurfaceSystem held(plate.ground.basis->band(), 0);
-  for (const SheetCell& cell : plate.ground.sheet) cell.add(plate.unmoved, plate.prior, held);
+  SurfaceSystem held = plate.priors(plate.unmoved, plate.prior);
   held.add_to_nodes(1e12);
   const Eigen::MatrixXd moves =
       moves_by_common_strain(plate.ground.sheet, plate.unmoved, plate.prior, held.dense().inverse());
