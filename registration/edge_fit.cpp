@@ -25,10 +25,13 @@ constexpr double kEdgeLimitLengthMm = 50.0;  // an edge is known up to a smooth 
 constexpr double kGapBendPerMm = 5e-4;       // how much a part may bend between the two sides of a gap
 constexpr double kNearRatio = 0.5;           // of the strip: how near to the fitted edge there must be points
 constexpr double kChanceMargin =
-    5.0;  // the longest of n random gaps exceeds log n + 5 means once in 150 times
+    5.0;                             // the longest of n random gaps exceeds log n + 5 means once in 150 times
+constexpr double kEmptyRatio = 0.2;  // of the usual number of points: no surface was scanned
 constexpr std::size_t kFewestForGap = 8;  // points of a stretch that rows are looked for in
 constexpr int kSeenPasses = 6;            // of finding the bins that show the edge, and the edge in them
 constexpr std::size_t kChunk = 512;
+constexpr double kSigmaOfMedian = 1.4826, kSigmaOfQuarter = 3.1383;  // of a normal error's size
+constexpr double kMixedRatio = 0.5;  // sigmas by quarter and median that differ so much are of two surfaces
 
 /// A scan point in the contour's own coordinates, CAD frame.
 struct StripPoint {
@@ -46,6 +49,14 @@ double variance_at(const SplineRow& row, const Eigen::MatrixXd& covariance) {
     for (std::size_t b = 0; b < 4; ++b)
       variance += row.value[a] * row.value[b] * covariance(row.index[a], row.index[b]);
   return std::max(0.0, variance);
+}
+
+/// Standard deviation by the median of the residuals' sizes; where most of them are of something else than
+/// the surface (a clamp beside a hole), by their lower quarter.
+double scale_of(std::vector<double> sizes) {
+  const double by_median = kSigmaOfMedian * median_of(sizes),
+               by_quarter = kSigmaOfQuarter * quantile_of(std::move(sizes), 0.25);
+  return by_quarter < kMixedRatio * by_median ? by_quarter : by_median;
 }
 
 double unseen_bend_mm(double to_seen_mm) {
@@ -79,6 +90,7 @@ class EdgeFitter {
       if (fit_.seen == before) break;
       fit_across();
     }
+    find_surface_beside();
     find_row_gaps();
     fit_.across.array() += options_.scanner.out_mm;  // the spline's weights sum to one
     fit_.scanner_sd_mm = options_.scanner.sd_mm;
@@ -133,7 +145,7 @@ class EdgeFitter {
     prior.bottomRightCorner(n, n) = fit_.spline.bending(options_.tilt_change_rad / knot2);
     prior.diagonal().tail(n).array() += 1.0 / (0.05 * 0.05);
     prior.diagonal().head(n).array() += 1.0 / (20.0 * 20.0);
-    double sigma = 0.5 + 0.2 * scan_.spacing_mm;
+    double sigma = options_.start_sigma_mm > 0.0 ? options_.start_sigma_mm : 0.5 + 0.2 * scan_.spacing_mm;
     Eigen::MatrixXd information;
     for (int round = 0; round < 8; ++round) {
       information = prior;
@@ -149,7 +161,7 @@ class EdgeFitter {
       const Eigen::VectorXd solution = information.ldlt().solve(right);
       fit_.height = solution.head(n);
       fit_.tilt = solution.tail(n);
-      sigma = std::max(1.4826 * median_of(std::move(sizes)), 0.25 * scan_.noise_sigma_mm + 1e-4);
+      sigma = std::max(scale_of(std::move(sizes)), 0.25 * scan_.noise_sigma_mm + 1e-4);
     }
     fit_.residual_sigma_mm = sigma;
     const Eigen::MatrixXd covariance = information.ldlt().solve(Eigen::MatrixXd::Identity(2 * n, 2 * n));
@@ -198,6 +210,16 @@ class EdgeFitter {
     fit_.bin_mm = found.bin_mm;
     fit_.seen = std::move(found.seen);
     fit_.density_per_mm2 = found.density_per_mm2;
+  }
+
+  /// Bins that hold no fewer points of the surface than chance leaves.
+  void find_surface_beside() {
+    std::vector<double> count(fit_.seen.size(), 0.0);
+    for (const StripPoint& p : points_)
+      if (p.inlier) ++count[arc_bin(p.arc_mm, fit_.bin_mm, count.size())];
+    const double fewest = std::max(1.0, kEmptyRatio * median_of(count));
+    fit_.beside.clear();
+    for (const double points : count) fit_.beside.push_back(points >= fewest ? 1 : 0);
   }
 
   /// Bins where rows of points run along the edge: it may be anywhere from the last row to where the next

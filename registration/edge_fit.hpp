@@ -19,6 +19,7 @@ struct EdgeFitOptions {
   double bend_normal_per_mm = 1e-4;  ///< and of the height
   double tilt_change_rad = 0.01;     ///< expected change of tilt from knot to knot
   double height_reach_mm = 3.0;  ///< farther from the carried surface (and three spacings) no point is of it
+  double start_sigma_mm = 0.0;   ///< about how far off the carried surface may be; 0: not known
   double gate_floor_mm = 0.0;    ///< points this near to the fitted height take part, however low the noise
   ScannerEdge scanner;           ///< taken off what the scan shows
   int threads = 0;
@@ -36,6 +37,7 @@ struct EdgeFit {
   Eigen::MatrixXd tilt_covariance;  ///< rad^2
   double bin_mm = 0.0;
   std::vector<char> seen;          ///< a bin of arc length: did the scan show the edge here?
+  std::vector<char> beside;        ///< a bin: did it show the surface beside the edge?
   std::vector<double> row_gap_mm;  ///< a bin: how far apart rows of points run along the edge; 0: none do
   double density_per_mm2 = 0.0;    ///< median over the seen bins
   double residual_sigma_mm = 0.0;  ///< robust residual of the height fit

@@ -185,8 +185,10 @@ void deform_by_surface(const CadModel& cad, const ScanModel& scan, const Registr
   for (std::size_t c = 0; c < cad.contours.size(); ++c)
     motions.push_back(sampled_motion(cad.contours[c], kMotionStepMm,
                                      [&](double s_mm) { return field->material_motion(c, s_mm); }));
+  EdgeFitOptions edge = options.edge;
+  edge.start_sigma_mm = field->fit().sigma_mm;
   if (options.role == ContourRole::kEdge)
-    result.contours = with_edges(cad, scan, std::move(motions), options.edge);
+    result.contours = with_edges(cad, scan, std::move(motions), edge);
   else
     for (std::size_t c = 0; c < motions.size(); ++c)
       result.contours.push_back({std::move(motions[c]), no_edge(cad.contours[c], options.edge)});

@@ -180,6 +180,47 @@ TEST_F(EdgeFitOnRing, GapIsNotSeenAndIsBridgedSmoothly) {
   }
 }
 
+TEST_F(EdgeFitOnRing, SurfaceBesideTheEdgeIsTakenForScannedWhereThereArePoints) {
+  Ring ring;
+  ring.gap_from_rad = 1.0;
+  ring.gap_to_rad = 2.0;
+  ScanModel scan = scan_of(ring, 4);
+  // Beyond the gap the last rows before the edge are missing: no edge, but surface.
+  std::vector<Eigen::Vector3d> left;
+  for (const Eigen::Vector3d& p : scan.points_mm)
+    if (std::hypot(p.x(), p.y()) > kRadiusMm + 4.0 * kSpacingMm || p.y() > 0.0) left.push_back(p);
+  scan.points_mm = left;
+  scan.normals.assign(left.size(), Eigen::Vector3d::UnitZ());
+  const EdgeFit edge = fit(scan);
+  const auto bin_at = [&](double angle_rad) {
+    const Eigen::Vector3d p_mm(kRadiusMm * std::cos(angle_rad), kRadiusMm * std::sin(angle_rad), 0.0);
+    return static_cast<std::size_t>(cad_.contours.front().nearest(p_mm).arc_mm / edge.bin_mm);
+  };
+  EXPECT_FALSE(edge.beside[bin_at(1.5)]) << "a gap";
+  EXPECT_TRUE(edge.beside[bin_at(0.5)]) << "edge and surface";
+  EXPECT_TRUE(edge.beside[bin_at(4.5)]) << "surface alone";
+  EXPECT_FALSE(edge.seen[bin_at(4.5)]);
+}
+
+TEST_F(EdgeFitOnRing, ClampOverMostOfTheStripDoesNotSpoilTheHeights) {
+  Ring ring;
+  const ScanModel bare = scan_of(ring, 6);
+  std::vector<Eigen::Vector3d> points = bare.points_mm;
+  for (const Eigen::Vector3d& p : bare.points_mm) {  // over two thirds of it, sloping up from 1.5 mm
+    if (std::atan2(p.y(), p.x()) > 1.1) continue;
+    const double over_mm = 1.5 + 0.15 * (std::hypot(p.x(), p.y()) - kRadiusMm);
+    points.insert(points.end(), 2, p + Eigen::Vector3d(0.1, 0.1, over_mm));
+  }
+  const std::vector<Eigen::Vector3d> normals(points.size(), Eigen::Vector3d::UnitZ());
+  const ScanModel scan{points, normals, NearestPoints(points), {}, {}, {}, kSpacingMm, 0.05, SideKnown::kYes};
+  EdgeFitOptions options;
+  options.start_sigma_mm = 0.05;
+  const EdgeFit edge = fit_edge(cad_, 0, scan, motion_, options);
+  EXPECT_LT(edge.residual_sigma_mm, 0.2);  // with the clamp in it 1.2
+  for (int i = 0; i < 12; ++i)
+    EXPECT_NEAR(edge.spline.at(length_mm() * i / 12.0).dot(edge.height), 0.0, 0.1) << i;
+}
+
 TEST_F(EdgeFitOnRing, SameBytesForAnyThreadCount) {
   const ScanModel scan = scan_of({}, 3);
   EdgeFitOptions options;
