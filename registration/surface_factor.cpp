@@ -100,10 +100,13 @@ void SurfaceFactor::solve_upper_down_to(std::size_t to, Eigen::Ref<Eigen::Matrix
 
 Eigen::MatrixXd SurfaceFactor::spread(Eigen::MatrixXd columns) const {
   if (columns.cols() == 0) return {};  // Eigen would take the address of what is not there
-  const Eigen::MatrixXd taken = taken_.transpose() * columns;
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  if (taken_.cols() > 0) {
+    const Eigen::MatrixXd along = taken_.transpose() * columns;
+    sum += along.transpose() * along;
+  }
   solve_lower_from(0, columns);
-  Eigen::MatrixXd sum = columns.transpose() * columns;
-  if (taken.rows() > 0) sum += taken.transpose() * taken;
+  sum += columns.transpose() * columns;
   return sum;
 }
 
