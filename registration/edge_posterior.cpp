@@ -25,14 +25,23 @@ double normal_share(double z) {
   return 0.5 * std::erfc(-z / std::numbers::sqrt2);
 }
 
-/// The message that gives a bound's mean and variance when the rest says N(mean_mm, variance_mm2) of g. What
-/// lies so far out that it is more likely a stray pulls, but makes nothing certain.
-EdgeMessage message_of(double mean_mm, double variance_mm2, double stray_ratio) {
+/// The message that gives a bound's mean and variance when the rest says N(mean_mm, variance_mm2) of g: by
+/// the first two derivatives, by the mean, of the point's probability. What lies so far out that it is more
+/// likely a stray pulls, but makes nothing certain.
+EdgeMessage message_of(double mean_mm, double variance_mm2, double stray_ratio, const WallPoints& wall) {
   const double spread_mm = std::sqrt(variance_mm2 + kEdgeBlurMm * kEdgeBlurMm);
   const double z = (mean_mm - kBalance * kEdgeBlurMm) / spread_mm;
-  const double share = normal_share(z) + stray_ratio;
-  const double slope = share > kLeastShare ? normal_density(z) / (spread_mm * share) : -z / spread_mm;
-  const double bend = slope * (slope + z / spread_mm);
+  const WallPoints spread_wall{wall.width_mm, std::sqrt(variance_mm2 + wall.sd_mm * wall.sd_mm)};
+  const double wall_ratio = spread_wall.ratio(mean_mm), wall_z = mean_mm / spread_wall.sd_mm;
+  const double share = normal_share(z) + stray_ratio + wall_ratio;
+  double slope = -z / spread_mm, bend = 0.0;
+  if (share > kLeastShare) {
+    const double rise = normal_density(z) / spread_mm, wall_rise = -wall_ratio * wall_z / spread_wall.sd_mm;
+    slope = (rise + wall_rise) / share;
+    bend = slope * slope + (rise * z / spread_mm -
+                            wall_ratio * (wall_z * wall_z - 1.0) / (spread_wall.sd_mm * spread_wall.sd_mm)) /
+                               share;
+  }
   EdgeMessage message;
   if (bend > 0.0) message.precision_per_mm2 = bend / std::max(kLeastPrecision, 1.0 - variance_mm2 * bend);
   message.pull_per_mm = slope + message.precision_per_mm2 * (mean_mm + variance_mm2 * slope);
@@ -93,7 +102,7 @@ void pass_messages(const SurfaceSystem& fit, double stray_ratio, std::vector<Edg
       const double rest = 1.0 / now.variance_mm2[i] - message.precision_per_mm2;
       if (!(rest > kLeastPrecision)) continue;
       const double rest_mm = (now.mean_mm[i] / now.variance_mm2[i] - message.pull_per_mm) / rest;
-      const EdgeMessage wanted = message_of(rest_mm, 1.0 / rest, stray_ratio);
+      const EdgeMessage wanted = message_of(rest_mm, 1.0 / rest, stray_ratio, sites[k].wall);
       message.precision_per_mm2 += kDamping * (wanted.precision_per_mm2 - message.precision_per_mm2);
       message.pull_per_mm += kDamping * (wanted.pull_per_mm - message.pull_per_mm);
     }

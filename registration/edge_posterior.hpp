@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "registration/edge_support.hpp"
 #include "registration/surface_system.hpp"
 
 namespace arris {
@@ -25,13 +26,14 @@ struct EdgeSite {
   SurfaceSystem::Row row;  ///< derivative of inside_mm by the system's unknowns
   double inside_mm = 0.0;  ///< at the fit as it stands
   EdgeMessage message;
+  WallPoints wall;  ///< it may be one of these
 };
 
 /// Posterior mean and covariance instead of the mode for one-sided edges, by expectation propagation. The
 /// mode of a hard edge touches the outermost points and lies up to the edge limit beside the mean, and its
 /// curvature does not know how far the edge may still be. Each point bounds its edge, but for a blur and for
-/// a share of strays; here the bound's message is renewed until it gives the mean and variance of the point's
-/// g that the bound itself gives beside all the others' messages.
+/// a share of strays and of points on the cut's wall; here the bound's message is renewed until it gives the
+/// mean and variance of the point's g that the bound itself gives beside all the others' messages.
 ///   fit      normal equations at the fit as it stands, the sites' messages in them
 ///   sites    their messages are renewed
 ///   cost     O(unknowns^2 * sites + sweeps * sites^3)

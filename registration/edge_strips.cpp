@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "acquisition/geometry/parallel_for.hpp"
 #include "registration/edge_support.hpp"
@@ -22,6 +23,8 @@ constexpr double kHighestBurrMm = 4.0, kBurrGates = 1.5;
 constexpr double kWallDepthMm = 2.0, kWallPerMm = 0.02,
                  kMostAbove = 2.0;      // strays are above as often as below
 constexpr double kWallGateRatio = 0.5;  // a wall's points scatter across the edge: few of them lie so level
+constexpr double kLeastWallMm = 0.5;    // of depth, that a wall's density is taken from
+constexpr double kGateSigmas = 4.0;     // what update() is given as the gate
 constexpr std::size_t kChunk = 256;
 
 }  // namespace
@@ -38,7 +41,8 @@ EdgeStrips::EdgeStrips(const std::vector<const Curve*>& edges, const SurfaceBasi
 }
 
 void EdgeStrips::update(const std::vector<SurfacePair>& pairs, const std::vector<Eigen::Vector3d>& shift_mm,
-                        double reach_mm, double gate_mm, bool walls_count, int threads) {
+                        const std::vector<double>& offset_mm, double reach_mm, double gate_mm,
+                        bool walls_count, int threads) {
   reach_mm_ = reach_mm;
   gate_mm_ = gate_mm;
   std::vector<std::optional<CarriedContour>> carried(edges_.size());
@@ -61,31 +65,45 @@ void EdgeStrips::update(const std::vector<SurfacePair>& pairs, const std::vector
         const std::optional<CarriedContour::Foot> foot =
             carried[e]->foot_within(pairs[i].p_mm, point.foot.distance_mm);
         if (!foot) continue;
-        point = {e, *foot, 0.0, pairs[i].on_face ? pairs[i].residual_mm : foot->height_mm};
+        point = {e, *foot, 0.0, pairs[i].on_face ? pairs[i].residual_mm : foot->height_mm, {}};
       }
     }
   });
-  std::vector<double> edge_gate_mm(edges_.size(), gate_mm);
-  if (walls_count)
-    for (const std::size_t e : with_walls()) edge_gate_mm[e] *= kWallGateRatio;
+  const std::vector<double> wall_per_mm2 =
+      walls_count ? wall_density_per_mm2(offset_mm) : std::vector<double>(edges_.size(), 0.0);
   for (Point& p : points_)
     if (p.foot.distance_mm < reach_mm_ && p.foot.across_mm < strip_mm_ &&
-        std::abs(p.height_mm) < edge_gate_mm[p.edge])
+        std::abs(p.height_mm) < (wall_per_mm2[p.edge] > 0.0 ? kWallGateRatio : 1.0) * gate_mm)
       p.weight = fan_weight(edges_[p.edge].stations[p.foot.station].fan_per_mm, p.foot.across_mm);
   for (std::size_t e = 0; e < edges_.size(); ++e) find_seen(e);
+  for (Point& p : points_)
+    if (p.weight > 0.0 && wall_per_mm2[p.edge] > 0.0)
+      p.wall = wall_points(p.height_mm, wall_per_mm2[p.edge], edges_[p.edge].bins.density_per_mm2);
 }
 
-std::vector<std::size_t> EdgeStrips::with_walls() const {
+std::vector<double> EdgeStrips::wall_density_per_mm2(const std::vector<double>& offset_mm) const {
   std::vector<double> below(edges_.size(), 0.0), above = below;
   for (const Point& p : points_) {
-    if (p.foot.distance_mm > kWallDepthMm || std::abs(p.foot.across_mm) > gate_mm_) continue;
+    if (p.foot.distance_mm > kWallDepthMm || std::abs(inside_mm(p, offset_mm)) > gate_mm_) continue;
     if (p.foot.height_mm < -gate_mm_) below[p.edge] += 1.0;
     if (p.foot.height_mm > gate_mm_) above[p.edge] += 1.0;
   }
-  std::vector<std::size_t> found;
-  for (std::size_t e = 0; e < edges_.size(); ++e)
-    if (below[e] - kMostAbove * above[e] > kWallPerMm * edges_[e].curve->length_mm()) found.push_back(e);
-  return found;
+  std::vector<double> per_mm2(edges_.size(), 0.0);
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    const double length_mm = edges_[e].curve->length_mm();
+    if (below[e] - kMostAbove * above[e] > kWallPerMm * length_mm)
+      per_mm2[e] = (below[e] - above[e]) / (length_mm * std::max(kLeastWallMm, kWallDepthMm - gate_mm_));
+  }
+  return per_mm2;
+}
+
+/// The wall's points have any height up to the edge's, those of the material that of their noise.
+WallPoints EdgeStrips::wall_points(double height_mm, double wall_per_mm2, double material_per_mm2) const {
+  const double sigma_mm = gate_mm_ / kGateSigmas, z = height_mm / sigma_mm;
+  const double on_wall_per_mm = 0.5 * wall_per_mm2 * std::erfc(z / std::numbers::sqrt2);
+  const double on_face_per_mm =
+      material_per_mm2 * std::exp(-0.5 * z * z) / (std::sqrt(2.0 * std::numbers::pi) * sigma_mm);
+  return {on_wall_per_mm / std::max(1e-9, on_face_per_mm), std::hypot(sigma_mm, kEdgeBlurMm)};
 }
 
 void EdgeStrips::find_seen(std::size_t e) {
@@ -174,7 +192,7 @@ void EdgeStrips::add(std::size_t begin, std::size_t end, const std::vector<doubl
       curvature_per_mm2 = messages_[i]->precision_per_mm2;
       slope_per_mm = messages_[i]->slope_at(inside) + p.weight * support.density_pull_per_mm(inside);
     } else {
-      const EdgeSupport::Pull pull = support.at(inside);
+      const EdgeSupport::Pull pull = support.at(inside, p.wall);
       slope_per_mm = p.weight * pull.slope_per_mm;
       curvature_per_mm2 = p.weight * pull.curvature_per_mm2;
     }
@@ -191,7 +209,7 @@ std::vector<EdgeSite> EdgeStrips::sites(const std::vector<double>& offset_mm, do
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Point& p = points_[i];
     if (!counts(i) || stray_[i]) continue;
-    EdgeSite site{i, {}, inside_mm(p, offset_mm), {}};
+    EdgeSite site{i, {}, inside_mm(p, offset_mm), {}, p.wall};
     if (messages_[i]) {
       site.message = *messages_[i];
     } else {
@@ -199,7 +217,7 @@ std::vector<EdgeSite> EdgeStrips::sites(const std::vector<double>& offset_mm, do
       if (points_per_mm > kDensePerMm) continue;
       if (site.inside_mm > std::max(kSiteBlurs * kEdgeBlurMm, kSitePoints / points_per_mm)) continue;
       const EdgeSupport& support = supports[p.edge];
-      const EdgeSupport::Pull pull = support.at(site.inside_mm);
+      const EdgeSupport::Pull pull = support.at(site.inside_mm, p.wall);
       site.message.precision_per_mm2 = pull.curvature_per_mm2;
       site.message.pull_per_mm = pull.curvature_per_mm2 * site.inside_mm - pull.slope_per_mm +
                                  support.density_pull_per_mm(site.inside_mm);
@@ -229,8 +247,8 @@ double EdgeStrips::resistance(const SurfaceSystem& system, const Eigen::VectorXd
     const double by_mm = system.dot(row, move);
     const double inside = inside_mm(p, offset_mm);
     const EdgeSupport& support = supports[p.edge];
-    const EdgeSupport::Pull pull = support.at(inside);
-    sum += p.weight * (support.whole_cost(inside + by_mm) - support.whole_cost(inside) -
+    const EdgeSupport::Pull pull = support.at(inside, p.wall);
+    sum += p.weight * (support.whole_cost(inside + by_mm, p.wall) - support.whole_cost(inside, p.wall) -
                        pull.slope_per_mm * by_mm - 0.5 * pull.curvature_per_mm2 * by_mm * by_mm);
   }
   return sum;
@@ -280,14 +298,14 @@ std::vector<EdgeClaim> EdgeStrips::claims(const std::vector<double>& offset_mm, 
     if (!counts(i) || stray_[i]) continue;
     const double inside = inside_mm(p, offset_mm);
     const EdgeSupport& support = supports[p.edge];
-    const EdgeSupport::Pull pull = support.at(inside);
+    const EdgeSupport::Pull pull = support.at(inside, p.wall);
     if (std::abs(inside) > kClaimTaus * support.tau_mm || pull.slope_per_mm >= 0.0) continue;
     EdgeClaim claim;
     claim.pair = i;
     claim.arc_mm = p.foot.arc_mm;
     claim.slope = p.weight * pull.slope_per_mm;
     claim.curvature = p.weight * pull.curvature_per_mm2;
-    claim.saved = p.weight * (support.cost(inside) + std::log(stray_ratio));
+    claim.saved = p.weight * (support.cost(inside, p.wall) + std::log(stray_ratio));
     set_row(p, claim.row);
     found.push_back(std::move(claim));
   }

@@ -23,16 +23,19 @@ class EdgeStrips {
   EdgeStrips(const std::vector<const Curve*>& edges, const SurfaceBasis& basis, double strip_mm,
              double spacing_mm, double out_mm);
 
-  /// Renews the strips: pairs within reach_mm of an edge carried by shift_mm, and within gate_mm of the
-  /// surface; at edges that show a wall, and when walls count, half of that.
+  /// Renews the strips: pairs within reach_mm of an edge carried by shift_mm and offset_mm inside that, and
+  /// within gate_mm of the surface (four sigmas); at edges that show a wall, and when walls count, half of
+  /// that.
   void update(const std::vector<SurfacePair>& pairs, const std::vector<Eigen::Vector3d>& shift_mm,
-              double reach_mm, double gate_mm, bool walls_count, int threads);
+              const std::vector<double>& offset_mm, double reach_mm, double gate_mm, bool walls_count,
+              int threads);
 
   struct Point {
     std::size_t edge = 0;
     CarriedContour::Foot foot;
     double weight = 0.0;     ///< undoes the fan of a bent contour; 0: no point of a strip
     double height_mm = 0.0;  ///< above the surface, or above the edge's own where the point is beyond it
+    WallPoints wall;         ///< that it may be one of
   };
   [[nodiscard]] const std::vector<Point>& points() const { return points_; }
   /// Adds points [begin, end): offset_mm is how far each edge lies inside the material of the carried
@@ -92,8 +95,10 @@ class EdgeStrips {
     BurrBins burrs;
   };
   void find_seen(std::size_t e);
-  /// Edges below which points stand in line with them: the cut's own wall is in the scan.
-  [[nodiscard]] std::vector<std::size_t> with_walls() const;
+  /// Points of the cut's own wall, in line with each edge below it; 0 where there is hardly any. 1/mm^2
+  [[nodiscard]] std::vector<double> wall_density_per_mm2(const std::vector<double>& offset_mm) const;
+  /// Level with the material a point that high may as well be of the edge's wall.
+  [[nodiscard]] WallPoints wall_points(double height_mm, double wall_per_mm2, double material_per_mm2) const;
   /// In a strip 1 mm wide all along the edge.
   [[nodiscard]] static double points_per_mm(const Edge& edge);
   /// Of each edge, when that with the fewest points is looked at with tau_mm.

@@ -168,7 +168,7 @@ CommonBend SurfaceProblem::common_bend(const SheetPrior& of) const {
 }
 
 void SurfaceProblem::lay_strips(const std::vector<Eigen::Vector3d>& shift_mm, bool walls_count) {
-  strips->update(pairs, shift_mm, strip_reach_mm_, gate_mm(), walls_count, options_.threads);
+  strips->update(pairs, shift_mm, fit.offset_mm, strip_reach_mm_, gate_mm(), walls_count, options_.threads);
 }
 
 double SurfaceProblem::point_sigma_mm() const {

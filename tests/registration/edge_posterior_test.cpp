@@ -20,6 +20,7 @@ struct StraightEdge {
     double s = 0.0, y_mm = 0.0;
   };
   std::vector<Point> points;
+  WallPoints wall;  ///< any point may be one of these
   double prior_sd_mm = 0.5, density_per_mm = 20.0, stray_ratio = 1e-3;
   std::vector<std::int32_t> node = {0};
 
@@ -39,7 +40,7 @@ struct StraightEdge {
   std::vector<EdgeSite> sites(const Eigen::Vector2d& x) const {
     std::vector<EdgeSite> all;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      EdgeSite site{i, {}, inside_mm(points[i], x), {1.0, 1.0 + 1.0 * inside_mm(points[i], x)}};
+      EdgeSite site{i, {}, inside_mm(points[i], x), {1.0, 1.0 + 1.0 * inside_mm(points[i], x)}, wall};
       site.row.node = &node;
       site.row.direction = {Eigen::Vector3d(-points[i].s, 0.0, 0.0)};
       site.row.offset = 0;
@@ -52,7 +53,7 @@ struct StraightEdge {
     double sum = -0.5 * x.squaredNorm() / (prior_sd_mm * prior_sd_mm) + density_per_mm * x[0];
     for (const Point& p : points) {
       const double z = inside_mm(p, x) / kEdgeBlurMm - 0.3375;
-      sum += std::log(0.5 * std::erfc(-z / std::sqrt(2.0)) + stray_ratio);
+      sum += std::log(0.5 * std::erfc(-z / std::sqrt(2.0)) + stray_ratio + wall.ratio(inside_mm(p, x)));
     }
     return sum;
   }
@@ -130,6 +131,49 @@ TEST(EdgePosterior, IsUnbiasedAndAsFarOffAsItSays) {
   const double rms_mm = std::sqrt(squares / kDraws);
   EXPECT_LT(std::abs(sum / kDraws), 3.0 * rms_mm / std::sqrt(kDraws) + 0.1 / 15.0);
   EXPECT_NEAR(rms_mm / std::sqrt(stated / kDraws), 1.0, 0.15);
+}
+
+/// The same edge with points of the cut's wall among those of the face, `per_mm` of the edge.
+StraightEdge drawn_with_wall(double density_per_mm, double per_mm, std::uint64_t seed) {
+  StraightEdge edge = drawn(density_per_mm, seed);
+  synthetic::Random random(1000 + seed);
+  edge.wall = {2.0 * per_mm / density_per_mm, 0.05};  // the edge is 2 mm long
+  for (int k = 0; k < 2.0 * per_mm; ++k)
+    edge.points.push_back({random.uniform(-1.0, 1.0), edge.wall.sd_mm * random.normal()});
+  return edge;
+}
+
+TEST(EdgePosterior, WithWallPointsHasTheMeanAndCovarianceOfTheWhole) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const StraightEdge edge = drawn_with_wall(15.0, 3.0, seed);
+    const Moments truth = by_grid(edge, 0.8, 400), found = by_messages(edge);
+    for (Eigen::Index k = 0; k < 2; ++k) {
+      const double sd_mm = std::sqrt(truth.covariance(k, k));
+      EXPECT_NEAR(found.mean[k], truth.mean[k], 0.35 * sd_mm) << seed;
+      EXPECT_NEAR(std::sqrt(found.covariance(k, k)) / sd_mm, 1.0, 0.4)
+          << seed;  // of so few points it may have two humps
+    }
+  }
+}
+
+TEST(EdgePosterior, WallPointsHelpAndDoNotPull) {
+  constexpr int kDraws = 300;
+  double sum = 0.0, squares = 0.0, stated = 0.0, bare = 0.0, taken_for_face = 0.0;
+  for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
+    StraightEdge edge = drawn_with_wall(15.0, 3.0, seed);
+    const Moments found = by_messages(edge);
+    sum += found.mean[0] / kDraws;
+    squares += found.mean[0] * found.mean[0] / kDraws;
+    stated += found.covariance(0, 0) / kDraws;
+    edge.wall.width_mm = 0.0;
+    taken_for_face += by_messages(edge).mean[0] / kDraws;
+    const double without = by_messages(drawn(15.0, seed)).mean[0];
+    bare += without * without / kDraws;
+  }
+  EXPECT_LT(std::abs(sum), 3.0 * std::sqrt(squares / kDraws) + 0.1 / 15.0);
+  EXPECT_NEAR(std::sqrt(squares / stated), 1.0, 0.2);
+  EXPECT_LT(squares, bare) << "they show where the edge is";
+  EXPECT_LT(taken_for_face, -0.03) << "taken for the face's they pull it outward";
 }
 
 TEST(EdgePosterior, AFarStrayPullsNothing) {

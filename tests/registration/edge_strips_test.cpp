@@ -52,7 +52,7 @@ struct Strip {
       pair.on_face = true;
       pairs.push_back(pair);
     }
-    strips.update(pairs, still, kReachMm, kGateMm, true, 1);
+    strips.update(pairs, still, {0.0}, kReachMm, kGateMm, true, 1);
   }
 };
 
@@ -82,6 +82,23 @@ TEST(EdgeStrips, AWallInTheScanHalvesTheGate) {
     EXPECT_LE(highest_mm, gate_mm);
     EXPECT_GT(highest_mm, 0.9 * gate_mm);
   }
+}
+
+TEST(EdgeStrips, APointLevelWithTheFaceMayBeOneOfTheWallTheLowerTheMore) {
+  const Strip wall(0.0, 5, 2.0), bare(0.0, 5);
+  for (const EdgeStrips::Point& point : bare.strips.points()) EXPECT_EQ(point.wall.width_mm, 0.0);
+  const double sigma_mm = 0.25 * kGateMm, per_mm2 = 2.0 / 2.0;
+  const double material_per_mm2 = wall.strips.greatest_density_per_mm2();
+  int judged = 0;
+  for (const EdgeStrips::Point& point : wall.strips.points()) {
+    if (point.weight <= 0.0) continue;
+    const double z = point.height_mm / sigma_mm;
+    const double truth_mm = per_mm2 * 0.5 * std::erfc(z / std::sqrt(2.0)) * sigma_mm *
+                            std::sqrt(2.0 * 3.14159265) * std::exp(0.5 * z * z) / material_per_mm2;
+    EXPECT_NEAR(point.wall.width_mm / truth_mm, 1.0, 0.2) << z;  // the wall's density is an estimate
+    ++judged;
+  }
+  EXPECT_GT(judged, 100);
 }
 
 /// Law: tangents and resistance together are the whole change of the points' cost, worked out here anew.

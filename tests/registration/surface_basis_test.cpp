@@ -202,5 +202,36 @@ TEST(EdgeSupport, LetsGoOfStraysAndHoldsTheEdge) {
   EXPECT_EQ(support.at(11.0).slope_per_mm, 0.0);             // beyond the strip
 }
 
+TEST(EdgeSupport, SlopeIsThatOfTheCostWithAWallAndWithout) {
+  const EdgeSupport support{0.05, 10.0, 5e-3};
+  for (const double width_mm : {0.0, 0.02, 0.3}) {
+    const WallPoints wall{width_mm, 0.06};
+    for (double g = -0.4; g < 0.4; g += 0.013) {
+      const EdgeSupport::Pull pull = support.at(g, wall);
+      const double h = 1e-6;
+      EXPECT_NEAR(pull.slope_per_mm,
+                  (support.whole_cost(g + h, wall) - support.whole_cost(g - h, wall)) / (2.0 * h),
+                  1e-3 * (1.0 + std::abs(pull.slope_per_mm)))
+          << g << " " << width_mm;
+    }
+  }
+}
+
+TEST(EdgeSupport, WallPointsAboutTheEdgePullItNowhere) {
+  // Expected pull of points uniform inside and of wall points about an edge at 0, by the law they are drawn
+  // by.
+  const double tau_mm = 0.03, step = 1e-4;
+  const WallPoints wall{0.1, 0.06};
+  const EdgeSupport support{tau_mm, 40.0 * tau_mm, 0.0};
+  double with_wall = 0.0, for_face = 0.0;
+  for (double g = -0.6; g < support.strip_mm; g += step) {
+    const double density = (g > 0.0 ? 1.0 : 0.0) + wall.ratio(g);
+    with_wall += density * support.at(g, wall).slope_per_mm * step;
+    for_face += density * support.at(g).slope_per_mm * step;
+  }
+  EXPECT_LT(for_face, -1.0) << "outward";
+  EXPECT_LT(std::abs(with_wall), 0.1 * std::abs(for_face));
+}
+
 }  // namespace
 }  // namespace arris
