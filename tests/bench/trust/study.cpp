@@ -106,11 +106,18 @@ StudyOutcome study_scan(const StudyPart& study, StudyCase study_case, std::uint6
   }
   if (study_case != StudyCase::kTenMissing) return outcome;
   options.method = RegistrationMethod::kSubdivision;
-  const Registration baseline = register_part(cad, prepared.model, options);
-  if (!baseline.usable()) return outcome;
-  for (const StatedError& row : stated_errors(truth, *baseline.field, scan, cad_from_local, path))
-    if (row.in_gap)
-      outcome.subdivision_gap_max_mm = std::max(outcome.subdivision_gap_max_mm, distance_mm(row));
+  const auto gap_max_mm = [&] {
+    const Registration baseline = register_part(cad, prepared.model, options);
+    double most_mm = 0.0;
+    if (!baseline.usable()) return most_mm;
+    for (const StatedError& row : stated_errors(truth, *baseline.field, scan, cad_from_local, path))
+      if (row.in_gap) most_mm = std::max(most_mm, distance_mm(row));
+    return most_mm;
+  };
+  outcome.subdivision_gap_max_mm = gap_max_mm();
+  options.subdivision.match = SegmentMatch::kPaper;
+  options.subdivision.stability = StabilityPoints::kPaper;
+  outcome.paper_gap_max_mm = gap_max_mm();
   return outcome;
 }
 

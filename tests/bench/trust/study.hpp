@@ -24,7 +24,9 @@ struct StudyOutcome {
   std::vector<std::string> refusals;
   bool has_path = false;
   double rms_mm = 0.0, max_mm = 0.0, gap_rms_mm = 0.0, gap_max_mm = 0.0;  ///< gap: 0 without one
-  double subdivision_gap_max_mm = 0.0;  ///< of subdivision ICP on the same scan; 0: not asked, or no path
+  /// In the gap, of subdivision ICP on the same scan; 0: not asked, or no path.
+  double subdivision_gap_max_mm = 0.0;  ///< ours
+  double paper_gap_max_mm = 0.0;        ///< with the paper's matching and stability points
   double normal_p95_deg = 0.0;
   std::vector<StatedError> rows;
 };
