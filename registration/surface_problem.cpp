@@ -15,6 +15,7 @@ namespace {
 constexpr double kAnneal = 0.6;
 constexpr double kStartTauMm = 2.0, kTauShrink = 0.6;
 constexpr double kFollowedTaus = 0.3;    // a round that moves the edge by more has not followed it yet
+constexpr double kMostTaus = 5.0;        // farther off, an edge does not feel its points
 constexpr int kMostHeld = 8;             // rounds at one tau
 constexpr std::size_t kLevelFactor = 4;  // of the points of a dense scan, from one level to the next
 constexpr double kGaugeMm = 50.0;        // weak pull to the rigid start, for motions that nothing else holds
@@ -216,7 +217,8 @@ double SurfaceProblem::step() {
   system.add_to_nodes(1.0 / (kProximalMm * kProximalMm));
   const SurfaceFactor factor(system);
   if (!factor.usable()) return std::numeric_limits<double>::quiet_NaN();
-  const Eigen::VectorXd move = -factor.solve(system.gradient);
+  Eigen::VectorXd move = -factor.solve(system.gradient);
+  move *= within_sight(move.tail(static_cast<Eigen::Index>(fit.offset_mm.size())));
   std::vector<Eigen::Vector3d> moved(system.nodes);
   for (std::size_t j = 0; j < moved.size(); ++j) {
     moved[j] = move.segment<3>(static_cast<Eigen::Index>(3 * j));
@@ -225,6 +227,12 @@ double SurfaceProblem::step() {
   for (std::size_t e = 0; e < fit.offset_mm.size(); ++e)
     fit.offset_mm[e] += move[n + static_cast<Eigen::Index>(e)];
   return moved_mm(moved);
+}
+
+double SurfaceProblem::within_sight(const Eigen::VectorXd& offset_move_mm) const {
+  const double most_mm = kMostTaus * tau_mm;
+  const double wanted_mm = offset_move_mm.size() > 0 ? offset_move_mm.cwiseAbs().maxCoeff() : 0.0;
+  return wanted_mm > most_mm ? most_mm / wanted_mm : 1.0;
 }
 
 double SurfaceProblem::moved_mm(const std::vector<Eigen::Vector3d>& moved) const {
