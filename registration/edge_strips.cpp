@@ -45,6 +45,12 @@ void EdgeStrips::update(const std::vector<SurfacePair>& pairs, const std::vector
                         bool walls_count, int threads) {
   reach_mm_ = reach_mm;
   gate_mm_ = gate_mm;
+  place_points(pairs, carry_edges(shift_mm), threads);
+  weigh_points(offset_mm, walls_count);
+}
+
+std::vector<std::optional<CarriedContour>> EdgeStrips::carry_edges(
+    const std::vector<Eigen::Vector3d>& shift_mm) {
   std::vector<std::optional<CarriedContour>> carried(edges_.size());
   for (std::size_t e = 0; e < edges_.size(); ++e) {
     Edge& edge = edges_[e];
@@ -53,13 +59,18 @@ void EdgeStrips::update(const std::vector<SurfacePair>& pairs, const std::vector
     edge.inward.clear();
     for (std::size_t k = 0; k < edge.stations.size(); ++k) edge.inward.push_back(carried[e]->inward(k));
   }
+  return carried;
+}
+
+void EdgeStrips::place_points(const std::vector<SurfacePair>& pairs,
+                              const std::vector<std::optional<CarriedContour>>& carried, int threads) {
   points_.assign(pairs.size(), {});
   stray_.resize(pairs.size(), 0);
   messages_.resize(pairs.size());
   parallel_for(pairs.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Point& point = points_[i];
-      point.foot.distance_mm = reach_mm;
+      point.foot.distance_mm = reach_mm_;
       for (std::size_t e = 0; e < carried.size(); ++e) {
         if (!carried[e]) continue;
         const std::optional<CarriedContour::Foot> foot =
@@ -69,11 +80,14 @@ void EdgeStrips::update(const std::vector<SurfacePair>& pairs, const std::vector
       }
     }
   });
+}
+
+void EdgeStrips::weigh_points(const std::vector<double>& offset_mm, bool walls_count) {
   const std::vector<double> wall_per_mm2 =
       walls_count ? wall_density_per_mm2(offset_mm) : std::vector<double>(edges_.size(), 0.0);
   for (Point& p : points_)
     if (p.foot.distance_mm < reach_mm_ && p.foot.across_mm < strip_mm_ &&
-        std::abs(p.height_mm) < (wall_per_mm2[p.edge] > 0.0 ? kWallGateRatio : 1.0) * gate_mm)
+        std::abs(p.height_mm) < (wall_per_mm2[p.edge] > 0.0 ? kWallGateRatio : 1.0) * gate_mm_)
       p.weight = fan_weight(edges_[p.edge].stations[p.foot.station].fan_per_mm, p.foot.across_mm);
   for (std::size_t e = 0; e < edges_.size(); ++e) find_seen(e);
   for (Point& p : points_)

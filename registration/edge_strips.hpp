@@ -94,6 +94,12 @@ class EdgeStrips {
     SeenBins bins;
     BurrBins burrs;
   };
+  [[nodiscard]] std::vector<std::optional<CarriedContour>> carry_edges(
+      const std::vector<Eigen::Vector3d>& shift_mm);
+  void place_points(const std::vector<SurfacePair>& pairs,
+                    const std::vector<std::optional<CarriedContour>>& carried, int threads);
+  /// Which points are of a strip, what they count, and what else they may be.
+  void weigh_points(const std::vector<double>& offset_mm, bool walls_count);
   void find_seen(std::size_t e);
   /// Points of the cut's own wall, in line with each edge below it; 0 where there is hardly any. 1/mm^2
   [[nodiscard]] std::vector<double> wall_density_per_mm2(const std::vector<double>& offset_mm) const;
