@@ -25,8 +25,7 @@ constexpr double kEdgeLimitLengthMm = 50.0;  // an edge is known up to a smooth 
 constexpr double kGapBendPerMm = 5e-4;       // how much a part may bend between the two sides of a gap
 constexpr double kNearRatio = 0.5;           // of the strip: how near to the fitted edge there must be points
 constexpr double kChanceMargin =
-    5.0;                             // the longest of n random gaps exceeds log n + 5 means once in 150 times
-constexpr double kEmptyRatio = 0.2;  // of the usual number of points: no surface was scanned
+    5.0;  // the longest of n random gaps exceeds log n + 5 means once in 150 times
 constexpr std::size_t kFewestForGap = 8;  // points of a stretch that rows are looked for in
 constexpr int kSeenPasses = 6;            // of finding the bins that show the edge, and the edge in them
 constexpr std::size_t kChunk = 512;
@@ -217,7 +216,7 @@ class EdgeFitter {
     std::vector<double> count(fit_.seen.size(), 0.0);
     for (const StripPoint& p : points_)
       if (p.inlier) ++count[arc_bin(p.arc_mm, fit_.bin_mm, count.size())];
-    const double fewest = std::max(1.0, kEmptyRatio * median_of(count));
+    const double fewest = std::max(1.0, kEmptyBinRatio * median_of(count));
     fit_.beside.clear();
     for (const double points : count) fit_.beside.push_back(points >= fewest ? 1 : 0);
   }

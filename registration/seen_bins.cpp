@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kPointsPerBin = 8.0;
 constexpr double kLeastBinMm = 2.0, kFewestBins = 8.0;
-constexpr double kLeastExpectedRatio = 0.5;           // of the scan's median density, beside the edge
-constexpr double kEmptyRatio = 0.2, kRimRatio = 0.6;  // of the usual number: not seen; beside a gap
+constexpr double kLeastExpectedRatio = 0.5;  // of the scan's median density, beside the edge
+constexpr double kRimRatio = 0.6;            // of the usual number, beside a gap: not seen
 
 }  // namespace
 
@@ -39,7 +39,7 @@ SeenBins find_seen_bins(const std::vector<BesidePoint>& points, double weight, c
   const double usual = std::max(median_of(all), expected);
   const double usual_near = std::max(median_of(near), strip.near_mm / strip.width_mm * expected);
   for (std::size_t b = 0; b < bins; ++b)
-    if (near[b] < kEmptyRatio * usual_near || all[b] < kEmptyRatio * usual) found.seen[b] = 0;
+    if (near[b] < kEmptyBinRatio * usual_near || all[b] < kEmptyBinRatio * usual) found.seen[b] = 0;
   const std::vector<char> sure = found.seen;
   for (std::size_t b = 0; b < bins; ++b) {
     const bool beside_gap = !sure[(b + 1) % bins] || !sure[(b + bins - 1) % bins];

@@ -4,6 +4,9 @@
 
 namespace arris {
 
+/// Of the usual number of points: a bin with fewer is empty.
+inline constexpr double kEmptyBinRatio = 0.2;
+
 /// A scan point beside an edge, as the edge sees it.
 struct BesidePoint {
   double arc_mm = 0.0;
