@@ -24,7 +24,6 @@ constexpr double kWallDepthMm = 2.0, kWallPerMm = 0.02,
                  kMostAbove = 2.0;      // strays are above as often as below
 constexpr double kWallGateRatio = 0.5;  // a wall's points scatter across the edge: few of them lie so level
 constexpr double kLeastWallMm = 0.5;    // of depth, that a wall's density is taken from
-constexpr double kGateSigmas = 4.0;     // what update() is given as the gate
 constexpr std::size_t kChunk = 256;
 
 }  // namespace

@@ -19,13 +19,15 @@ namespace arris {
 /// inside, where the edge was seen, and what that says about the field (EdgeSupport).
 class EdgeStrips {
  public:
+  static constexpr double kGateSigmas = 4.0;  ///< of a point's height: farther off it is not of the surface
+
   /// edges must outlive this; spacing_mm is the scan's, and it shows edges out_mm out in the void.
   EdgeStrips(const std::vector<const Curve*>& edges, const SurfaceBasis& basis, double strip_mm,
              double spacing_mm, double out_mm);
 
   /// Renews the strips: pairs within reach_mm of an edge carried by shift_mm and offset_mm inside that, and
-  /// within gate_mm of the surface (four sigmas); at edges that show a wall, and when walls count, half of
-  /// that.
+  /// within gate_mm of the surface (kGateSigmas of its points); at edges that show a wall, and when walls
+  /// count, half of that.
   void update(const std::vector<SurfacePair>& pairs, const std::vector<Eigen::Vector3d>& shift_mm,
               const std::vector<double>& offset_mm, double reach_mm, double gate_mm, bool walls_count,
               int threads);

@@ -20,7 +20,7 @@ class SurfaceProblem {
  public:
   static constexpr double kUnfollowedMm = 0.008;  ///< of a bent surface, by nodes 30 mm apart: height
   static constexpr std::size_t kFewestPointsANode = 8;
-  static constexpr double kScaleSigmas = 4.0, kGateSigmas = 4.0;
+  static constexpr double kScaleSigmas = 4.0;
 
   /// All must outlive this.
   SurfaceProblem(const CadModel& cad, const ScanModel& scan, const RigidMotion& rigid_scan_from_cad,
@@ -63,7 +63,7 @@ class SurfaceProblem {
   /// One Gauss-Newton step; returns the rms move of the followed contours across and normal to them.
   double step();
   /// Points farther from the surface tell nothing of edges and shapes.
-  [[nodiscard]] double gate_mm() const { return kGateSigmas * fit.sigma_mm; }
+  [[nodiscard]] double gate_mm() const { return EdgeStrips::kGateSigmas * fit.sigma_mm; }
   /// A round's move that no longer matters.
   [[nodiscard]] double settled_mm() const;
 
