@@ -230,7 +230,8 @@ class EdgeFitter {
     for (const StripPoint& p : points_)
       if (p.inlier && fit_.seen_at(p.arc_mm))
         inside_mm[arc_bin(p.arc_mm, fit_.bin_mm, bins)].push_back(inside_of_edge_mm(p));
-    const auto reach = static_cast<int>(0.5 * kEdgeLimitLengthMm / fit_.bin_mm);
+    auto reach = static_cast<int>(0.5 * kEdgeLimitLengthMm / fit_.bin_mm);
+    if (curve_.closed()) reach = std::min(reach, (static_cast<int>(bins) - 1) / 2);  // each bin once
     fit_.row_gap_mm.assign(bins, 0.0);
     for (std::size_t b = 0; b < bins; ++b) {
       std::vector<double> window_mm;

@@ -25,8 +25,10 @@ SeenBins find_seen_bins(const std::vector<BesidePoint>& points, double weight, c
   const double expected_per_mm =
       kLeastExpectedRatio * strip.width_mm / std::max(1e-9, strip.spacing_mm * strip.spacing_mm);
   const double mean_per_mm = std::max({1e-9, weight / strip.length_mm, expected_per_mm});
-  found.bin_mm = std::clamp(kPointsPerBin / mean_per_mm, kLeastBinMm, strip.length_mm / kFewestBins);
-  const std::size_t bins = static_cast<std::size_t>(std::floor(strip.length_mm / found.bin_mm));
+  found.bin_mm = std::clamp(kPointsPerBin / mean_per_mm, kLeastBinMm,
+                            std::max(kLeastBinMm, strip.length_mm / kFewestBins));
+  const std::size_t bins =
+      std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(strip.length_mm / found.bin_mm)));
   found.bin_mm = strip.length_mm / static_cast<double>(bins);
   found.seen.assign(bins, 1);
   std::vector<double> all(bins, 0.0), near(bins, 0.0);

@@ -292,6 +292,28 @@ TEST(EdgeFitOnRows, RowsAlongAnEdgeLeaveItOpenBetweenTwoOfThem) {
   EXPECT_LT(edge.sd_across_mm(right, true), 1.0);
 }
 
+/// Shorter all round than the stretch over which rows are looked for, or than a bin is long.
+TEST(EdgeFitOnSmallHole, IsFoundAndSeen) {
+  for (const double radius_mm : {2.1, 0.6, 0.25}) {
+    synthetic::PlateShape shape = synthetic::plate_with_circle(radius_mm);
+    shape.holes[0].centre_mm.setZero();
+    const CadModel cad = scenes::cad_of(PlatePart(shape));
+    synthetic::Random random(3);
+    std::vector<Eigen::Vector3d> points;
+    while (points.size() < 4000) {
+      const Eigen::Vector3d p(random.uniform(-8.0, 8.0), random.uniform(-8.0, 8.0), 0.0);
+      if (p.norm() > radius_mm) points.push_back(p);
+    }
+    const std::vector<Eigen::Vector3d> normals(points.size(), Eigen::Vector3d::UnitZ());
+    const ScanModel scan{points, normals, NearestPoints(points), {}, {}, {}, 0.25, 0.0, SideKnown::kYes};
+    const EdgeFit edge =
+        fit_edge(cad, 0, scan, scenes::rigid_along(cad.contours[0], RigidMotion::Identity()), {});
+    EXPECT_GT(edge.seen_ratio(), 0.8) << radius_mm;
+    EXPECT_EQ(edge.row_gap_mm.size(), edge.seen.size());
+    for (const double gap_mm : edge.row_gap_mm) EXPECT_LT(gap_mm, 0.25) << radius_mm;  // the spacing
+  }
+}
+
 TEST_F(EdgeFitOnRing, PointsInRandomPlacesAreNoRows) {
   std::size_t bins = 0, called_rows = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
