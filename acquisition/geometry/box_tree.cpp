@@ -16,6 +16,8 @@ constexpr std::size_t kFewItems = 24;  // of so few the cuts are looked at more 
 constexpr std::size_t kRun = 512;      // items that follow each other on a curve, a branch of the tree
 constexpr int kHalvedFrom = BoxTree::kDeepest / 2, kHalvedFromInParts = BoxTree::kDeepest / 4;
 constexpr std::size_t kChunk = 4096;
+constexpr float kRounding = 1.2e-7F,  // of itself: more than a float is off by
+    kLeastRounding = std::numeric_limits<float>::min();
 
 /// A box of floats; the fourth lane is nothing's.
 struct Box {
@@ -43,8 +45,8 @@ struct Item {
 };
 
 struct Piece {
-  std::size_t first, last;
-  int depth;         // halvings that led to it
+  std::size_t first = 0, last = 0;
+  int depth = 0;     // halvings that led to it
   Box box, middles;  // of its items
   [[nodiscard]] std::size_t count() const { return last - first; }
   /// The piece to part next has most of it; one item cannot be parted.
@@ -62,33 +64,44 @@ struct Bin {
   [[nodiscard]] float cost() const { return box.half_area() * static_cast<float>(count); }
 };
 
-/// Boxes about the centre, rounded outward.
+float below(double value) {
+  const auto rounded = static_cast<float>(value);
+  return rounded - (std::abs(rounded) * kRounding + kLeastRounding);
+}
+float above(double value) {
+  return -below(-value);
+}
+
+/// Along a space-filling curve, by the boxes' middles.
+std::vector<std::uint32_t> order_of(std::span<const Eigen::AlignedBox3d> boxes_mm,
+                                    const Eigen::Vector3d& centre_mm, int threads) {
+  std::vector<Eigen::Vector3f> middles_mm(boxes_mm.size());
+  parallel_for(boxes_mm.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      middles_mm[i] = (boxes_mm[i].center() - centre_mm).cast<float>();
+  });
+  return curve_order(middles_mm, threads);
+}
+
+/// The boxes in an order (empty: as they come) about the centre, rounded outward.
 std::vector<Item> items_of(std::span<const Eigen::AlignedBox3d> boxes_mm, const Eigen::Vector3d& centre_mm,
-                           int threads) {
+                           const std::vector<std::uint32_t>& order, int threads) {
   std::vector<Item> items(boxes_mm.size());
   parallel_for(items.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Item& item = items[i];
-      item.number = static_cast<std::int32_t>(i);
+      const std::size_t number = order.empty() ? i : order[i];
+      item.number = static_cast<std::int32_t>(number);
       item.box.low[3] = item.box.high[3] = 0.0F;
-      const Eigen::Vector3d low_mm = boxes_mm[i].min() - centre_mm, high_mm = boxes_mm[i].max() - centre_mm;
+      const Eigen::Vector3d low_mm = boxes_mm[number].min() - centre_mm;
+      const Eigen::Vector3d high_mm = boxes_mm[number].max() - centre_mm;
       for (int axis = 0; axis < 3; ++axis) {
-        item.box.low[axis] = std::nextafter(static_cast<float>(low_mm[axis]), -kInfinity);
-        item.box.high[axis] = std::nextafter(static_cast<float>(high_mm[axis]), kInfinity);
+        item.box.low[axis] = below(low_mm[axis]);
+        item.box.high[axis] = above(high_mm[axis]);
       }
     }
   });
   return items;
-}
-
-std::vector<Item> along_curve(const std::vector<Item>& items, int threads) {
-  std::vector<Eigen::Vector3f> middles_mm;
-  middles_mm.reserve(items.size());
-  for (const Item& item : items) middles_mm.emplace_back(item.middle().head<3>());
-  std::vector<Item> ordered;
-  ordered.reserve(items.size());
-  for (const std::uint32_t i : curve_order(middles_mm, threads)) ordered.push_back(items[i]);
-  return ordered;
 }
 
 }  // namespace
@@ -169,55 +182,63 @@ struct BoxTree::Builder {
     return cut;
   }
 
+  struct Pieces {
+    std::array<Piece, kWidth> of;
+    std::size_t count = 0;
+    void add(const Piece& piece) { of[count++] = piece; }
+  };
+
   /// Up to four pieces of one: items, or parted until there are four, the largest first.
-  [[nodiscard]] std::vector<Piece> pieces_of(const Piece& whole) {
-    std::vector<Piece> pieces;
-    pieces.reserve(kWidth);
+  [[nodiscard]] Pieces pieces_of(const Piece& whole) {
+    Pieces pieces;
     if (whole.count() <= kWidth) {
       for (std::size_t i = whole.first; i < whole.last; ++i)
-        pieces.push_back({i, i + 1, whole.depth + 1, items[i].box, {}});
+        pieces.add({i, i + 1, whole.depth + 1, items[i].box, {}});
       return pieces;
     }
-    pieces.push_back(whole);
-    while (pieces.size() < kWidth) {
-      const auto largest = std::max_element(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
-        return a.to_part() < b.to_part();
-      });
+    pieces.add(whole);
+    while (pieces.count < kWidth) {
+      const auto end = pieces.of.begin() + static_cast<std::ptrdiff_t>(pieces.count);
+      const auto largest = std::max_element(
+          pieces.of.begin(), end, [](const Piece& a, const Piece& b) { return a.to_part() < b.to_part(); });
       if (largest->count() < 2) break;
       const auto [left, right] = parted(*largest);
       *largest = left;
-      pieces.push_back(right);
+      pieces.add(right);
     }
     return pieces;
   }
 
   /// Adds the node of a piece and all below it.
   std::int32_t build(const Piece& whole) {
-    const std::vector<Piece> pieces = pieces_of(whole);
+    const Pieces pieces = pieces_of(whole);
     const std::size_t id = nodes.size();
     nodes.emplace_back();
     Node node;
     for (std::size_t k = 0; k < kWidth; ++k) {
-      const bool is_there = k < pieces.size();
-      const Box box = is_there ? pieces[k].box : Box();
+      const bool is_there = k < pieces.count;
+      const Box box = is_there ? pieces.of[k].box : Box();
       for (std::size_t axis = 0; axis < 3; ++axis) {
         node.low_mm[axis][k] = box.low[static_cast<int>(axis)];
         node.high_mm[axis][k] = box.high[static_cast<int>(axis)];
       }
       node.child[k] = kNone;
       if (!is_there) continue;
-      if (pieces[k].count() > 1)
-        node.child[k] = build(pieces[k]);
+      if (pieces.of[k].count() > 1)
+        node.child[k] = build(pieces.of[k]);
       else if (at_place >= 0)
-        node.child[k] = -1 - at_place - static_cast<std::int32_t>(pieces[k].first);
+        node.child[k] = -1 - at_place - static_cast<std::int32_t>(pieces.of[k].first);
       else
-        node.child[k] = -1 - items[pieces[k].first].number;
+        node.child[k] = -1 - items[pieces.of[k].first].number;
     }
     nodes[id] = node;
     return static_cast<std::int32_t>(id);
   }
 
-  void build() { build(piece(0, items.size(), 0)); }
+  void build() {
+    nodes.reserve(items.size() / 2);  // a third is what most need
+    build(piece(0, items.size(), 0));
+  }
 
   static std::vector<Node> in_parts(std::span<Item> items, int threads);
 };
@@ -239,23 +260,27 @@ std::vector<BoxTree::Node> BoxTree::Builder::in_parts(std::span<Item> items, int
   });
   Builder top{boxes, kHalvedFromInParts, -1};
   top.build();
-  std::vector<Node> all = std::move(top.nodes);
-  std::size_t count = all.size();
+  std::size_t count = top.nodes.size();
   std::vector<std::int32_t> first;
   for (const Builder& branch : branches) {
     first.push_back(static_cast<std::int32_t>(count));
     count += branch.nodes.size();
   }
-  for (Node& node : all)
+  for (Node& node : top.nodes)
     for (std::int32_t& child : node.child)
       if (child < 0 && child != kNone) child = first[static_cast<std::size_t>(-1 - child)];
-  all.reserve(count);
-  for (std::size_t r = 0; r < runs; ++r)
-    for (Node& node : branches[r].nodes) {
-      for (std::int32_t& child : node.child)
-        if (child >= 0) child += first[r];
-      all.push_back(node);
+  std::vector<Node> all(count);
+  std::copy(top.nodes.begin(), top.nodes.end(), all.begin());
+  parallel_for(runs, 4, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) {
+      auto into = all.begin() + first[r];
+      for (Node node : branches[r].nodes) {
+        for (std::int32_t& child : node.child)
+          if (child >= 0) child += first[r];
+        *into++ = node;
+      }
     }
+  });
   return all;
 }
 
@@ -265,14 +290,16 @@ BoxTree::BoxTree(std::span<const Eigen::AlignedBox3d> boxes_mm, int threads) {
   for (const Eigen::AlignedBox3d& box : boxes_mm) whole.extend(box);
   centre_mm_ = whole.center();
   half_extent_mm_ = 0.5 * whole.sizes().maxCoeff();
-  std::vector<Item> items = items_of(boxes_mm, centre_mm_, threads);
-  if (items.size() <= 2 * kRun) {
+  const bool in_parts = boxes_mm.size() > 2 * kRun;
+  std::vector<std::uint32_t> order;
+  if (in_parts) order = order_of(boxes_mm, centre_mm_, threads);
+  std::vector<Item> items = items_of(boxes_mm, centre_mm_, order, threads);
+  if (in_parts) {
+    nodes_ = Builder::in_parts(items, threads);
+  } else {
     Builder builder{items, kHalvedFrom, 0};
     builder.build();
     nodes_ = std::move(builder.nodes);
-  } else {
-    items = along_curve(items, threads);
-    nodes_ = Builder::in_parts(items, threads);
   }
   item_at_.reserve(items.size());
   for (const Item& item : items) item_at_.push_back(item.number);

@@ -178,7 +178,9 @@ std::vector<std::uint32_t> curve_order(std::span<const Eigen::Vector3f> points_m
     sort_many(items, next, threads);
   }
   std::vector<std::uint32_t> order(items.size());
-  std::transform(items.begin(), items.end(), order.begin(), [](const Keyed& item) { return item.point; });
+  parallel_for(items.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) order[i] = items[i].point;
+  });
   return order;
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "acquisition/geometry/parallel_for.hpp"
 #include "acquisition/types/error.hpp"
@@ -76,24 +77,6 @@ void number_edges(const TriangleMesh& mesh, int threads, MeshNormals& normals) {
   }
 }
 
-void face_normals(const TriangleMesh& mesh, int threads, MeshNormals& normals) {
-  normals.degenerate.resize(mesh.triangles.size());
-  normals.face.resize(mesh.triangles.size());
-  parallel_for(mesh.triangles.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
-      const auto& [a, b, c] = mesh.triangles[t];
-      const Eigen::Vector3d ab_mm = mesh.vertices_mm[at(b)] - mesh.vertices_mm[at(a)];
-      const Eigen::Vector3d ac_mm = mesh.vertices_mm[at(c)] - mesh.vertices_mm[at(a)];
-      const Eigen::Vector3d cross_mm2 = ab_mm.cross(ac_mm);
-      const double longest_mm2 =
-          std::max({ab_mm.squaredNorm(), ac_mm.squaredNorm(), (ac_mm - ab_mm).squaredNorm()});
-      const bool flat = !(cross_mm2.norm() > kFlatRatio * longest_mm2);
-      normals.degenerate[t] = flat ? 1 : 0;
-      normals.face[t] = flat ? Eigen::Vector3d::Zero() : cross_mm2.normalized();
-    }
-  });
-}
-
 std::vector<Eigen::Vector3d> sums_at_edges(const MeshNormals& normals) {
   std::vector<Eigen::Vector3d> sums(normals.edge_is_border.size(), Eigen::Vector3d::Zero());
   for (std::size_t t = 0; t < normals.face.size(); ++t)
@@ -120,21 +103,26 @@ void fill_flat_faces(MeshNormals& normals) {
 
 /// At each corner of a triangle. To single precision, so that the last bit of atan2, which depends on the
 /// CPU's instructions, does not matter.
-std::array<float, 3> angles_rad(const TriangleMesh& mesh, std::size_t t) {
+std::array<float, 3> angles_of(const TriangleMesh& mesh, std::size_t t, bool has_area) {
+  std::array<Eigen::Vector3d, 3> side_mm;  // from corner k to corner k + 1
+  for (std::size_t k = 0; k < 3; ++k)
+    side_mm[k] =
+        mesh.vertices_mm[at(mesh.triangles[t][(k + 1) % 3])] - mesh.vertices_mm[at(mesh.triangles[t][k])];
+  const double area2_mm2 = side_mm[0].cross(side_mm[1]).norm();
+  std::array<double, 3> angles_rad{};
+  for (std::size_t k = 0; k < 3; ++k)
+    angles_rad[k] = k == 2 && has_area ? std::numbers::pi - angles_rad[0] - angles_rad[1]
+                                       : std::atan2(area2_mm2, -side_mm[k].dot(side_mm[(k + 2) % 3]));
   std::array<float, 3> angles{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Eigen::Vector3d& v_mm = mesh.vertices_mm[at(mesh.triangles[t][k])];
-    const Eigen::Vector3d one_mm = mesh.vertices_mm[at(mesh.triangles[t][(k + 1) % 3])] - v_mm;
-    const Eigen::Vector3d two_mm = mesh.vertices_mm[at(mesh.triangles[t][(k + 2) % 3])] - v_mm;
-    angles[k] = static_cast<float>(std::atan2(one_mm.cross(two_mm).norm(), one_mm.dot(two_mm)));
-  }
+  std::transform(angles_rad.begin(), angles_rad.end(), angles.begin(),
+                 [](double rad) { return static_cast<float>(rad); });
   return angles;
 }
 
 void vertex_normals(const TriangleMesh& mesh, int threads, MeshNormals& normals) {
   std::vector<std::array<float, 3>> angles(mesh.triangles.size());
   parallel_for(angles.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) angles[t] = angles_rad(mesh, t);
+    for (std::size_t t = begin; t < end; ++t) angles[t] = angles_of(mesh, t, normals.degenerate[t] == 0);
   });
   normals.vertex.assign(mesh.vertices_mm.size(), Eigen::Vector3d::Zero());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -153,16 +141,39 @@ void normalise(std::vector<Eigen::Vector3d>& vectors, int threads) {
 
 }  // namespace
 
-MeshNormals mesh_normals(const TriangleMesh& mesh, int threads) {
+MeshNormals face_normals(const TriangleMesh& mesh, int threads) {
   check_indices(mesh);
   MeshNormals normals;
+  normals.degenerate.resize(mesh.triangles.size());
+  normals.face.resize(mesh.triangles.size());
+  parallel_for(mesh.triangles.size(), kChunk, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      const Eigen::Vector3d ab_mm = mesh.vertices_mm[at(b)] - mesh.vertices_mm[at(a)];
+      const Eigen::Vector3d ac_mm = mesh.vertices_mm[at(c)] - mesh.vertices_mm[at(a)];
+      const Eigen::Vector3d cross_mm2 = ab_mm.cross(ac_mm);
+      const double longest_mm2 =
+          std::max({ab_mm.squaredNorm(), ac_mm.squaredNorm(), (ac_mm - ab_mm).squaredNorm()});
+      const bool flat = !(cross_mm2.norm() > kFlatRatio * longest_mm2);
+      normals.degenerate[t] = flat ? 1 : 0;
+      normals.face[t] = flat ? Eigen::Vector3d::Zero() : cross_mm2.normalized();
+    }
+  });
+  return normals;
+}
+
+void add_edge_and_vertex_normals(const TriangleMesh& mesh, int threads, MeshNormals& normals) {
   number_edges(mesh, threads, normals);
-  face_normals(mesh, threads, normals);
   fill_flat_faces(normals);
   normals.edge = sums_at_edges(normals);
   vertex_normals(mesh, threads, normals);
   normalise(normals.edge, threads);
   normalise(normals.vertex, threads);
+}
+
+MeshNormals mesh_normals(const TriangleMesh& mesh, int threads) {
+  MeshNormals normals = face_normals(mesh, threads);
+  add_edge_and_vertex_normals(mesh, threads, normals);
   return normals;
 }
 

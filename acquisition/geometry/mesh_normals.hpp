@@ -26,4 +26,9 @@ struct MeshNormals {
 /// a triangle names a vertex that is not there.
 [[nodiscard]] MeshNormals mesh_normals(const TriangleMesh& mesh, int threads = 0);
 
+/// Its first half, `face` and `degenerate`, and its second: who needs the first alone to go on with does the
+/// second meanwhile. The second changes `face` of what is degenerate.
+[[nodiscard]] MeshNormals face_normals(const TriangleMesh& mesh, int threads = 0);
+void add_edge_and_vertex_normals(const TriangleMesh& mesh, int threads, MeshNormals& normals);
+
 }  // namespace arris

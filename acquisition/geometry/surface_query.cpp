@@ -109,7 +109,14 @@ struct Seed {
 }  // namespace
 
 struct SurfaceQuery::Impl {
-  Impl(const TriangleMesh& mesh_, int threads) : mesh(mesh_), normals(mesh_normals(mesh_, threads)) {
+  Impl(const TriangleMesh& mesh_, int threads) : mesh(mesh_), normals(face_normals(mesh_, threads)) {
+    parallel_for(2, 1, threads, [&](std::size_t begin, std::size_t end) {  // much of either is for one thread
+      for (std::size_t half = begin; half < end; ++half)
+        half == 0 ? build_tree(threads) : add_edge_and_vertex_normals(mesh, threads, normals);
+    });
+  }
+
+  void build_tree(int threads) {
     std::vector<std::int32_t> with_area;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       if (normals.degenerate[t] == 0) with_area.push_back(static_cast<std::int32_t>(t));
