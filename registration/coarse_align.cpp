@@ -175,7 +175,8 @@ std::vector<PoseCandidate> CoarseSearch::with_turned(std::vector<PoseCandidate> 
   return found;
 }
 
-/// Whole loops first; then pieces of contours, where no loop fits well; then the surface, where nothing fits.
+/// Whole loops first; then pieces of contours, where no loop fits well; then the surface, and all edges of
+/// its faces, where nothing fits.
 std::vector<PoseCandidate> CoarseSearch::all_candidates() {
   result_.start = "matching loops";
   std::vector<PoseCandidate> found = proper(StartSource::kLoops, kRefined);
@@ -188,7 +189,9 @@ std::vector<PoseCandidate> CoarseSearch::all_candidates() {
     if (!found.empty() && found.front().misfit.patient_mm < before_mm) result_.start = words;
   };
   add(StartSource::kPieces, "matching pieces of contours");
-  if (found.empty() || !fitness_.fits(found.front())) add(StartSource::kSurface, "matching surfaces");
+  const auto fits = [&] { return !found.empty() && fitness_.fits(found.front()); };
+  if (!fits()) add(StartSource::kSurface, "matching surfaces");
+  if (!fits()) add(StartSource::kFaces, "matching the edges of faces");
   return with_turned(std::move(found));
 }
 

@@ -29,8 +29,8 @@ struct CoarseAlignment {
   double runner_up_ratio = 0.0;  ///< score of the best other pose over score_mm; 0: there was no other
   int equal_poses = 1;           ///< that fit alike and differ by motions that map the whole path onto itself
   bool flipped_normals = false;  ///< the side was unknown and the shape decided for the other sign
-  std::string
-      start;  ///< "matching loops", "matching pieces of contours", "matching surfaces", "initial pose"
+  std::string start;  ///< "matching loops", "matching pieces of contours", "matching surfaces", "matching the
+                      ///< edges of faces", "initial pose"
   std::string reason;         ///< refusal in plain words; empty when usable
   double mirror_ratio = 0.0;  ///< score of the scan's mirror image over score_mm; near 1: a mirrored export
                               ///< would not be noticed. 0: not tried

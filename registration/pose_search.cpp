@@ -7,6 +7,7 @@
 
 #include "acquisition/geometry/parallel_for.hpp"
 #include "registration/edge_pairs.hpp"
+#include "registration/face_match.hpp"
 #include "registration/free_directions.hpp"
 #include "registration/loop_match.hpp"
 #include "registration/rigid_icp.hpp"
@@ -19,6 +20,7 @@ constexpr int kSurfaceSample = 160;
 constexpr double kTellingRatio = 0.5;  // of the longest followed contour: a small hole alone tells too little
 constexpr double kSelfFitsRatio = 0.2;     // of the contour's size: the drawing nearly lies on itself
 constexpr double kSelfLengthRatio = 1.15;  // of two of its contours
+constexpr std::size_t kStartsAFace = 4;
 constexpr std::size_t kMostTurned = 4, kMostSelfMotions = 100;
 constexpr std::size_t kEdgeSample = 120, kScoredTogether = 4;
 constexpr int kIcpRounds = 14, kMoreRefinements = 3, kSettlingRounds = 150;
@@ -149,6 +151,8 @@ std::string PoseSearch::free_by_surface(const ScanModel& scan, bool flip, const 
 std::vector<RigidMotion> PoseSearch::starts(const LightScan& scan, StartSource source) const {
   if (source == StartSource::kSurface)
     return match_surfaces(cad_, scan.model, scan.spacing_mm, band_mm_, threads_);
+  if (source == StartSource::kFaces)
+    return match_faces(cad_, scan.model, score_.cap_mm(), kStartsAFace, threads_);
   std::vector<RigidMotion> starts;
   const std::vector<Contour> loops = not_rejected(scan.model);
   for (const LoopMatch& match :

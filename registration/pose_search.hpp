@@ -23,6 +23,7 @@ enum class StartSource {
   kLoops,    ///< closed loops and long chains of the scan laid whole on contours of the drawing
   kPieces,   ///< stretches of them, whatever their length: a clamp or the border of the view cut the contour
   kSurface,  ///< features of the surface, no contour at all
+  kFaces,    ///< contours on all edges of a face at once, whatever loops these make
 };
 
 /// Finds poses of one drawing in a scan: starts from loops, pieces or the surface, a short rigid ICP from the

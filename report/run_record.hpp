@@ -62,8 +62,8 @@ struct AlignmentSummary {
   double runner_up_ratio = 0.0;  ///< score of the second best pose over the best: near 1 is ambiguous
   int equal_poses = 1;           ///< that fit alike and lay the whole tool path on itself
   std::string side_decided_by;   ///< "normals in the file", "seen_from", "initial pose", "nothing"
-  std::string
-      start;  ///< "matching loops", "matching pieces of contours", "matching surfaces", "initial pose"
+  std::string start;  ///< "matching loops", "matching pieces of contours", "matching surfaces", "matching the
+                      ///< edges of faces", "initial pose"
   std::vector<std::string> free_directions;  ///< motions the data leave undetermined, in words
   std::vector<double>
       covariance_6x6;  ///< row-major, of a small motion of the part about covariance_about_mm, CAD
