@@ -87,6 +87,7 @@ class CoarseSearch {
   PoseFitness fitness_;
   std::array<std::optional<LightScan>, 2> light_;
   std::vector<RigidMotion> self_motions_;
+  bool best_by_faces_ = false;
   std::optional<PoseCandidate> settled_best_;
   std::vector<std::pair<PoseCandidate, PoseCandidate>> settled_others_;  ///< as found, and at the end
   CoarseAlignment result_;
@@ -186,12 +187,14 @@ std::vector<PoseCandidate> CoarseSearch::all_candidates() {
     const std::vector<PoseCandidate> more = proper(source, kRefinedMore);
     found.insert(found.end(), more.begin(), more.end());
     fitness_.sort(found);
-    if (!found.empty() && found.front().misfit.patient_mm < before_mm) result_.start = words;
+    const bool better = !found.empty() && found.front().misfit.patient_mm < before_mm;
+    if (better) result_.start = words;
+    return better;
   };
   add(StartSource::kPieces, "matching pieces of contours");
   const auto fits = [&] { return !found.empty() && fitness_.fits(found.front()); };
   if (!fits()) add(StartSource::kSurface, "matching surfaces");
-  if (!fits()) add(StartSource::kFaces, "matching the edges of faces");
+  if (!fits()) best_by_faces_ = add(StartSource::kFaces, "matching the edges of faces");
   return with_turned(std::move(found));
 }
 
@@ -249,16 +252,19 @@ bool CoarseSearch::refuse_wrong_hand(const std::vector<PoseCandidate>& found) {
   const PoseCandidate& best = found.front();
   const double left_mm = fitness_.beyond_spacing_mm(best.misfit.patient_mm);
   const bool good =
-      side_open() || fitness_.fits_whole(best) || left_mm < kMirrorLeastRatio * search_.score().cap_mm();
+      side_open() || (!best_by_faces_ &&
+                      (fitness_.fits_whole(best) || left_mm < kMirrorLeastRatio * search_.score().cap_mm()));
   const std::size_t refined = good ? kRefinedOfGood : kRefined;
   const std::vector<PoseCandidate> mirrored =
       search_.candidates(LightScan(scan_, false, true), StartSource::kLoops, refined, best.misfit.patient_mm);
   if (!mirrored.empty() && mirrored.front().usable())
     result_.mirror_ratio = mirrored.front().misfit.patient_mm / best.misfit.patient_mm;
   if (good) return false;
+  // A drawing laid on any edges there are is near to many scans: then no other hand may fit better at all.
+  const double better_ratio = best_by_faces_ ? 1.0 : kMirrorBetterRatio;
   const auto fits_better = [&](const std::vector<PoseCandidate>& others) {
     return !others.empty() &&
-           fitness_.beyond_spacing_mm(others.front().misfit.patient_mm) < kMirrorBetterRatio * left_mm;
+           fitness_.beyond_spacing_mm(others.front().misfit.patient_mm) < better_ratio * left_mm;
   };
   result_.mirrored = fits_better(mirrored);
   result_.inverted = fits_better(search_.candidates(light(true), StartSource::kLoops, refined));
@@ -301,7 +307,7 @@ CoarseSearch::Settled CoarseSearch::settled(const PoseCandidate& best, const Pos
 bool CoarseSearch::comes_to(const PoseCandidate& best, const PoseCandidate& other) {
   if (best.flip != other.flip) return false;
   const auto [a, b] = settled(best, other);
-  return a.usable() && b.usable() && search_.same_place(a, b);
+  return a.usable() && b.usable() && search_.one_start(a, b);
 }
 
 /// Whether the other pose is a fit as well and lays the drawing's contours, as far as the scan shows them,
@@ -349,7 +355,7 @@ void CoarseSearch::judge_runner_up(const std::vector<PoseCandidate>& proper) {
       return other.flip == place->flip && search_.same_place(*place, other);
     });
     if (told || !other.usable()) continue;
-    const double worse = times_worse(other, best);
+    const double worse = fitness_.times_worse(other, best);
     const bool no_rival =
         fitness_.is_hidden(other) && other.misfit.shown_ratio < kHiddenRivalRatio * best.misfit.shown_ratio;
     if (no_rival && worse < options_.ambiguity_ratio) continue;

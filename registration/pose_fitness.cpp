@@ -68,13 +68,21 @@ void PoseFitness::sort(std::vector<PoseCandidate>& found) const {
                         [&](const PoseCandidate& pose) { return !is_hidden(pose); });
 }
 
-double times_worse(const PoseCandidate& other, const PoseCandidate& best) {
-  const double patient = other.misfit.patient_mm / best.misfit.patient_mm;
-  if (best.misfit.shown_ratio < kQuarterMissing) return patient;
-  const double strictest = best.misfit.shown_ratio < kTenthMissing
-                               ? other.misfit.middle_mm / best.misfit.middle_mm
-                               : other.misfit.strict_mm / best.misfit.strict_mm;
-  return strictest < kNotWorseRatio ? strictest : std::max(patient, strictest);
+double PoseFitness::contradicted_mm(const PoseMisfit& misfit) const {
+  return std::sqrt(misfit.patient_mm * misfit.patient_mm + misfit.against_ratio * cap_mm_ * cap_mm_);
+}
+
+double PoseFitness::times_worse(const PoseCandidate& other, const PoseCandidate& best) const {
+  double worst = other.misfit.patient_mm / best.misfit.patient_mm;
+  const auto ask = [&](double ratio) {
+    if (worst >= kNotWorseRatio) worst = ratio < kNotWorseRatio ? ratio : std::max(worst, ratio);
+  };
+  if (best.misfit.shown_ratio >= kTenthMissing)
+    ask(other.misfit.strict_mm / best.misfit.strict_mm);
+  else if (best.misfit.shown_ratio >= kQuarterMissing)
+    ask(other.misfit.middle_mm / best.misfit.middle_mm);
+  ask(contradicted_mm(other.misfit) / contradicted_mm(best.misfit));
+  return worst;
 }
 
 }  // namespace arris

@@ -32,18 +32,20 @@ class PoseFitness {
   [[nodiscard]] bool confirmed_by_others(const PoseCandidate& pose) const;
   /// Whether this one leaves no more than a fit, or than the best pose does by about half.
   [[nodiscard]] bool fits_too(const PoseCandidate& pose, const PoseCandidate& best) const;
+  /// How much worse the other pose fits: by what tells the two apart best of the misfit that leaves out no
+  /// less than the best pose's contours lack, and of the places where the scan's face goes on, which no clamp
+  /// hides; unless one of these speaks for the other.
+  [[nodiscard]] double times_worse(const PoseCandidate& other, const PoseCandidate& best) const;
   /// What a fit may leave beyond the spacing.
   [[nodiscard]] double fits_mm() const;
   /// Best first, those that are never taken last.
   void sort(std::vector<PoseCandidate>& found) const;
 
  private:
+  [[nodiscard]] double contradicted_mm(const PoseMisfit& misfit) const;
+
   double spacing_mm_, cap_mm_;
   bool edges_needed_;
 };
-
-/// How much worse the other pose fits: of the misfits that leave out no less than the best pose's contours
-/// lack, the one that tells the two apart best, unless the strictest of them contradicts.
-[[nodiscard]] double times_worse(const PoseCandidate& other, const PoseCandidate& best);
 
 }  // namespace arris

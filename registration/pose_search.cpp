@@ -27,7 +27,6 @@ constexpr int kIcpRounds = 14, kMoreRefinements = 3, kSettlingRounds = 150;
 constexpr double kFirstReachRatio = 2.0, kSecondReachRatio = 0.5;  // of the cap: edge points that take part
 constexpr double kReachSpacings = 2.5;
 constexpr double kStillInItRatio = 2.0;  // of what the best pose leaves: worse ones are not refined further
-constexpr double kSamePlaceRatio = 0.06, kSameStartRatio = 0.15;  // of the contour's size
 
 /// A start by its score, or by what that is at least: those are looked at first.
 struct RankedStart {
@@ -273,8 +272,8 @@ std::vector<PoseCandidate> PoseSearch::candidates(const LightScan& scan, StartSo
   return found;
 }
 
-bool PoseSearch::same_place(const PoseCandidate& a, const PoseCandidate& b) const {
-  const double tolerance_mm = kSamePlaceRatio * score_.size_mm();
+bool PoseSearch::within(const PoseCandidate& a, const PoseCandidate& b, double size_ratio) const {
+  const double tolerance_mm = size_ratio * score_.size_mm();
   if (moved_mm(a.scan_from_cad, b.scan_from_cad) < tolerance_mm) return true;
   if (a.free.empty()) return false;
   const RigidMotion g = a.scan_from_cad.inverse() * b.scan_from_cad;

@@ -59,9 +59,17 @@ class PoseSearch {
   [[nodiscard]] std::string free_by_surface(const ScanModel& scan, bool flip, const RigidMotion& start) const;
   /// True if the two poses put the contours in the same place, point by point or, where a motion along the
   /// contour is free (a circle), as curves.
-  [[nodiscard]] bool same_place(const PoseCandidate& a, const PoseCandidate& b) const;
+  [[nodiscard]] bool same_place(const PoseCandidate& a, const PoseCandidate& b) const {
+    return within(a, b, kSamePlaceRatio);
+  }
+  /// The same for poses as near to each other as two starts of one pose.
+  [[nodiscard]] bool one_start(const PoseCandidate& a, const PoseCandidate& b) const {
+    return within(a, b, kSameStartRatio);
+  }
 
  private:
+  static constexpr double kSamePlaceRatio = 0.06, kSameStartRatio = 0.15;  // of the contour's size
+  [[nodiscard]] bool within(const PoseCandidate& a, const PoseCandidate& b, double size_ratio) const;
   [[nodiscard]] ScanModel along_contours(const LightScan& scan, const RigidMotion& start,
                                          double reach_mm) const;
   [[nodiscard]] PoseCandidate refined(const LightScan& scan, const RigidMotion& start, double reach_mm,
