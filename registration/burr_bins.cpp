@@ -24,6 +24,16 @@ double BurrBins::length_mm() const {
   return bin_mm * static_cast<double>(std::count(burr.begin(), burr.end(), 1));
 }
 
+void BurrBins::widen(double by_mm) {
+  if (burr.empty()) return;
+  const std::size_t count = burr.size();
+  const auto by = std::min(static_cast<std::size_t>(std::ceil(by_mm / bin_mm)), count / 2);
+  const std::vector<char> narrow = burr;
+  for (std::size_t b = 0; b < count; ++b)
+    for (std::size_t k = 0; narrow[b] != 0 && k <= by; ++k)
+      burr[(b + k) % count] = burr[(b + count - k) % count] = 1;
+}
+
 BurrBins find_burr_bins(std::span<const double> standing_out_mm, double length_mm, double density_per_mm2) {
   BurrBins found;
   found.bin_mm = std::max(kLeastBinMm, kFewestPoints / (kLeastHeightMm * std::max(1e-9, density_per_mm2)));

@@ -11,6 +11,8 @@ struct BurrBins {
   std::vector<char> burr;  ///< empty: the scan is too coarse to tell
   [[nodiscard]] bool at(double arc_mm) const;
   [[nodiscard]] double length_mm() const;
+  /// So much more on either side of each burr.
+  void widen(double by_mm);
 };
 
 /// Bins in which far more points stand out of the edge (beyond it, or above the surface beside it) than in

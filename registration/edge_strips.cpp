@@ -19,6 +19,7 @@ constexpr double kStrayHeightMm = 2.0;    // flyers of an edge stand above and b
 constexpr double kUnseenStrays = 0.5;     // none seen is no proof that there are none
 constexpr double kMostStrayRatio = 0.05;  // early rounds leave material beyond the edge
 constexpr double kBurrTaus = 4.0, kBurrSpacings = 0.3;  // nearer to the edge a point may well be of it
+constexpr double kMostBurrRatio = 0.7;  // of an edge: with more taken for burrs, the rest does not hold it
 constexpr double kHighestBurrMm = 4.0, kBurrGates = 1.5;
 constexpr double kWallDepthMm = 2.0, kWallPerMm = 0.02,
                  kMostAbove = 2.0;      // strays are above as often as below
@@ -183,6 +184,18 @@ bool EdgeStrips::call_burrs(const std::vector<double>& offset_mm, double tau_mm)
     edge.burrs = std::move(found);
   }
   return changed;
+}
+
+bool EdgeStrips::widen_burrs(double by_mm) {
+  bool any = false;
+  for (Edge& edge : edges_) {
+    BurrBins wide = edge.burrs;
+    wide.widen(by_mm);
+    if (wide.length_mm() == 0.0 || wide.length_mm() > kMostBurrRatio * edge.curve->length_mm()) continue;
+    edge.burrs = std::move(wide);
+    any = true;
+  }
+  return any;
 }
 
 /// Of the edge as the scanner shows it.

@@ -15,6 +15,7 @@ namespace arris {
 namespace {
 
 constexpr int kStrayPasses = 5, kBurrPasses = 4;
+constexpr double kBesideBurrMm = 20.0;   // where a low burr may lie beside a high one: as long as most are
 constexpr double kClaimsNearMm = 150.0;  // strays that hold one place of an edge together
 constexpr double kFinerFactor = 1.5, kShapeCellRatio = 0.67;               // of the node spacing
 constexpr double kWorthMm = 0.002, kWorthSigmas = 1.0, kWorthRatio = 0.5;  // of a shape left, to follow it
@@ -86,6 +87,8 @@ class SurfaceFitter {
       (void)problem_.call_burrs();  // before so many points pull the edge to them
       problem_.settle();
     }
+    // A low burr beside a high one may have been taken for the edge: without it, it stands out.
+    if (fit_.usable() && problem_.strips->widen_burrs(kBesideBurrMm)) problem_.settle();
     for (int pass = 0; pass < kBurrPasses && fit_.usable() && problem_.call_burrs(); ++pass)
       problem_.settle();
     if (fit_.usable()) problem_.bends_alike ? follow_alike() : choose_nodes();

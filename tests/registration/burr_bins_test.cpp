@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "fixtures/synthetic/random.hpp"
 
 namespace arris {
@@ -40,6 +42,26 @@ TEST(BurrBins, StraysEvenlyAlongTheEdgeAreNone) {
 
 TEST(BurrBins, AStretchLongerThanAnyBurrIsThePartItself) {
   EXPECT_EQ(find_burr_bins(burr(50.0, 200.0, 400), kLengthMm, kDensityPerMm2).length_mm(), 0.0);
+}
+
+TEST(BurrBins, WidenTakesAsMuchOnEitherSideOfEachAndOverTheSeam) {
+  std::vector<double> arcs_mm = burr(395.0, 400.0, 10);
+  for (const double s_mm : burr(200.0, 210.0, 20)) arcs_mm.push_back(s_mm);
+  BurrBins found = find_burr_bins(arcs_mm, kLengthMm, kDensityPerMm2);
+  const BurrBins narrow = found;
+  found.widen(20.0);
+  for (double s_mm = 0.5; s_mm < kLengthMm; s_mm += 1.0) {
+    bool near = false, far = true;  // of a burr as it was, bins counted whole
+    for (double off_mm = -20.0; off_mm <= 20.0; off_mm += 1.0)
+      near = near || narrow.at(std::fmod(s_mm + off_mm + kLengthMm, kLengthMm));
+    for (double off_mm = -20.0 - narrow.bin_mm; off_mm <= 20.0 + narrow.bin_mm; off_mm += 1.0)
+      far = far && !narrow.at(std::fmod(s_mm + off_mm + kLengthMm, kLengthMm));
+    EXPECT_FALSE(near && !found.at(s_mm)) << s_mm;
+    EXPECT_FALSE(far && found.at(s_mm)) << s_mm;
+  }
+  BurrBins none = find_burr_bins({}, kLengthMm, kDensityPerMm2);
+  none.widen(20.0);
+  EXPECT_EQ(none.length_mm(), 0.0);
 }
 
 TEST(BurrBins, ACoarseScanCannotTell) {
