@@ -68,8 +68,8 @@ class EdgeStrips {
 
   /// Looks for burrs, which tell nothing of where the edge is; true: other places than before.
   bool call_burrs(const std::vector<double>& offset_mm, double tau_mm);
-  /// Takes so much beside each burr for one, until they are looked for again, where that leaves a third of the
-  /// edge; false: there is nothing to widen.
+  /// Takes so much beside each burr for one, until they are looked for again, where that leaves a third of
+  /// the edge; false: there is nothing to widen.
   bool widen_burrs(double by_mm);
 
   /// Length of the edges, all together, and of what the scan shows of them.
