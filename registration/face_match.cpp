@@ -18,7 +18,7 @@ namespace {
 constexpr double kCapSpacings = 2.0;  // no smaller cap: edges are no finer
 constexpr double kHeightCaps = 2.0;   // edges this far over and under the contours are not of the face
 constexpr int kMostTurns = 2400, kRootCells = 1 << (EdgeGrid::kLevels - 1);
-constexpr int kFollowedSamples = 60, kOtherSamples = 24;
+constexpr std::size_t kFollowedSamples = 60, kOtherSamples = 24, kMostSamples = 480;  // a contour; of all
 constexpr double kOthersWeight = 0.5;   // of the drawing's other contours: they need not be in the scan
 constexpr double kHopelessRatio = 0.8;  // of what a drawing leaves that lies on no edge
 constexpr double kWorseRatio = 1.4;     // of the best of all faces: no start
@@ -179,13 +179,18 @@ struct FlatContours {
     std::vector<Eigen::Vector3d> places_mm, inwards;
     std::vector<float> weights;
     Eigen::Vector3d middle_mm = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
-    const auto add = [&](const std::vector<Curve>& curves, int count, double weight) {
-      for (const Curve& curve : curves)
-        for (int i = 0; i < count; ++i) {
-          const double s_mm = i * curve.length_mm() / count;
+    const auto add = [&](const std::vector<Curve>& curves, std::size_t most, double weight) {
+      const std::size_t stride = std::max<std::size_t>(1, (curves.size() + kMostSamples - 1) / kMostSamples),
+                        chosen = (curves.size() + stride - 1) / stride;
+      const std::size_t count =
+          std::clamp<std::size_t>(kMostSamples / std::max<std::size_t>(1, chosen), 1, most);
+      for (std::size_t c = 0; c < curves.size(); c += stride)
+        for (std::size_t i = 0; i < count; ++i) {
+          const Curve& curve = curves[c];
+          const double s_mm = double(i) * curve.length_mm() / double(count);
           places_mm.push_back(curve.point_mm(s_mm));
           inwards.push_back(inward_of(curve, s_mm));
-          weights.push_back(float(weight) / float(count * int(curves.size())));
+          weights.push_back(float(weight) / float(count * chosen));
           middle_mm += places_mm.back();
           normal += curve.normal(s_mm);
         }

@@ -123,6 +123,15 @@ TEST_F(FaceMatchOfSixHoles, SameStartsForAnyThreadCountAndNoneFromRejectedLoops)
   EXPECT_TRUE(match_faces(cad_, trial.scan, cap_mm_, 4, 1).empty());
 }
 
+TEST_F(FaceMatchOfSixHoles, OfManyContoursSomePlacesDo) {
+  const scenes::Trial trial = scenes::trial_of(part_, on_a_table(), 6);
+  CadModel many = cad_;
+  many.contours.assign(1000, cad_.contours[0]);
+  const std::vector<RigidMotion> starts = match_faces(many, trial.scan, cap_mm_, 4, 1);
+  ASSERT_FALSE(starts.empty());
+  EXPECT_LT(off_mm(starts.front(), trial.scan_from_cad), 2.0 * cap_mm_);
+}
+
 TEST_F(FaceMatchOfSixHoles, ContoursRoundATubeLieInNoPlane) {
   const scenes::Trial trial = scenes::trial_of(part_, on_a_table(), 5);
   Contour round;
