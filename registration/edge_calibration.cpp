@@ -1,8 +1,9 @@
 #include "registration/edge_calibration.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace arris {
 namespace {
@@ -55,13 +56,6 @@ Stretches stretches_of(const Curve& curve, const EdgeFit& edge) {
   return stretches;
 }
 
-template <class... Values>
-std::string text_of(const char* format, Values... values) {
-  char text[300];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
 /// One after the other; the first that says no ends it.
 class Calibrator {
  public:
@@ -105,22 +99,22 @@ class Calibrator {
   void doubt_reference(const CalibratedContour& told, double height_rms_mm, double edge_limit_mm) {
     const double most_mm = std::max(kMostWanderMm, kWanderEdgeLimits * edge_limit_mm);
     if (height_rms_mm > kMostHeightMm)
-      found_.reason = text_of(
-          "contour %d: the reference is bent: a rigid fit leaves %.2f mm rms of height along it, at most "
-          "%.2f; take a stiff one and lay it down free",
+      found_.reason = fmt::format(
+          "contour {}: the reference is bent: a rigid fit leaves {:.2f} mm rms of height along it, at most "
+          "{:.2f}; take a stiff one and lay it down free",
           told.id, height_rms_mm, kMostHeightMm);
     else if (told.scatter_mm > most_mm)
-      found_.reason = text_of(
-          "contour %d: its edge wanders by %.2f mm along it, at most %.2f: the reference is not as drawn, "
-          "has a burr, or the scan is too coarse",
+      found_.reason = fmt::format(
+          "contour {}: its edge wanders by {:.2f} mm along it, at most {:.2f}: the reference is not "
+          "as drawn, has a burr, or the scan is too coarse",
           told.id, told.scatter_mm, most_mm);
   }
 
   void conclude() {
     if (found_.stretches == 0) {
       found_.reason =
-          text_of("no closed contour was seen on %.0f %% of its length: scan the reference all round",
-                  100.0 * kSeenRatio);
+          fmt::format("no closed contour was seen on {:.0f} % of its length: scan the reference all round",
+                      100.0 * kSeenRatio);
       return;
     }
     const double count = static_cast<double>(found_.stretches);
@@ -134,12 +128,12 @@ class Calibrator {
     for (const CalibratedContour& told : found_.contours)
       if (told.used && found_.usable()) doubt_size(told);
     if (found_.usable() && std::abs(found_.edge.out_mm) > ScannerEdge::kMostOutMm)
-      found_.reason = text_of(
-          "the edges are %+.2f mm out, at most %.2f: is the reference of the size that the drawing says?",
+      found_.reason = fmt::format(
+          "the edges are {:+.2f} mm out, at most {:.2f}: is the reference of the size that the drawing says?",
           found_.edge.out_mm, ScannerEdge::kMostOutMm);
     if (found_.usable() && found_.edge.sd_mm >= ScannerEdge::kUncalibratedSdMm)
-      found_.reason = text_of(
-          "the edge is known to %.3f mm, no better than without a calibration (%.3f): scan more densely, "
+      found_.reason = fmt::format(
+          "the edge is known to {:.3f} mm, no better than without a calibration ({:.3f}): scan more densely, "
           "more often, or a longer edge",
           found_.edge.sd_mm, ScannerEdge::kUncalibratedSdMm);
   }
@@ -149,8 +143,8 @@ class Calibrator {
                                     options_.size_sd_mm + kSharedErrorMm);
     const double apart_mm = std::abs(told.out_mm - found_.edge.out_mm);
     if (apart_mm > kAgreeSigmas * sd_mm)
-      found_.reason = text_of(
-          "contour %d is shown %+.3f mm out, all together %+.3f: %.3f mm apart, at most %.3f: is the "
+      found_.reason = fmt::format(
+          "contour {} is shown {:+.3f} mm out, all together {:+.3f}: {:.3f} mm apart, at most {:.3f}: is the "
           "reference of the size that the drawing says?",
           told.id, told.out_mm, found_.edge.out_mm, apart_mm, kAgreeSigmas * sd_mm);
   }

@@ -1,10 +1,11 @@
 #include "registration/fixture_targets.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "registration/sphere_finder.hpp"
@@ -21,13 +22,6 @@ constexpr std::array<double, 6> kUnitRatios = {25.4, 10.0, 1000.0, 1.0 / 25.4, 0
 
 using Places = std::vector<Eigen::Vector3d>;
 using Targets = std::span<const FixtureTarget>;
-
-template <class... Values>
-std::string words(const char* format, Values... values) {
-  char text[300];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 std::string plural(std::size_t count, const std::string& one) {
   return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
@@ -134,16 +128,16 @@ std::string misfit(Targets list, const Seen& seen, const TargetMatch& match, dou
   const std::vector<Culprit> moved = culprits(list, seen, match, limit_mm);
   if (moved.size() == 1) {
     const Culprit& one = moved.front();
-    return words(
-        "fixture target %s is %.2f mm from its place as the others show it (at most %.2f): it has "
+    return fmt::format(
+        "fixture target {} is {:.2f} mm from its place as the others show it (at most {:.2f}): it has "
         "moved, or its line in the list is wrong",
-        list[one.target].id.c_str(), one.distance_mm, limit_mm);
+        list[one.target].id, one.distance_mm, limit_mm);
   }
   std::string names;
   for (std::size_t t = 0; t < list.size(); ++t)
     if (match.seen_of[t] >= 0)
-      names += (names.empty() ? "" : ", ") + words("%s %.2f mm", list[t].id.c_str(), match.residual_mm[t]);
-  return words("the fixture targets do not fit their list (at most %.2f mm): ", limit_mm) + names +
+      names += (names.empty() ? "" : ", ") + fmt::format("{} {:.2f} mm", list[t].id, match.residual_mm[t]);
+  return fmt::format("the fixture targets do not fit their list (at most {:.2f} mm): ", limit_mm) + names +
          "; which of them has moved cannot be told";
 }
 
@@ -169,9 +163,9 @@ std::string nothing_fits(Targets list, const Seen& seen, double limit_mm) {
   if (!line.empty())
     return "the fixture targets found (" + line +
            ") lie nearly on a line: a turn about it stays unknown; show another one";
-  return words(
-      "no three of the %zu possible fixture targets in the scan stand to each other as targets of "
-      "the list do (within %.1f mm)",
+  return fmt::format(
+      "no three of the {} possible fixture targets in the scan stand to each other as targets of "
+      "the list do (within {:.1f} mm)",
       seen.targets.size(), reach_mm(list, limit_mm));
 }
 
@@ -267,9 +261,10 @@ TargetFrame solve_targets(Targets list, std::span<const Eigen::Vector3d> points_
     frame.reasons.push_back(
         frame.unit_ratio == 1.0
             ? nothing_fits(list, seen, limit_mm)
-            : words("the list of fixture targets fits the scan when it is scaled by %g: it is in another "
-                    "unit than mm, or the scan is",
-                    frame.unit_ratio));
+            : fmt::format(
+                  "the list of fixture targets fits the scan when it is scaled by {:g}: it is in another "
+                  "unit than mm, or the scan is",
+                  frame.unit_ratio));
     return frame;
   }
   const ChosenMatch chosen = choose_match(list, matches, limit_mm);
@@ -291,7 +286,7 @@ std::string why_list_is_unusable(Targets list, double max_residual_mm) {
   if (list.size() < 3) return "at least 3 targets are needed";
   const double least_mm = least_distance_mm(list);
   if (least_mm < 2.0 * kReachLimits * max_residual_mm)
-    return words("two targets are only %.3f mm apart", least_mm);
+    return fmt::format("two targets are only {:.3f} mm apart", least_mm);
   if (on_a_line(places_mm)) return "the targets lie nearly on a line: a turn about it would stay unknown";
   std::vector<SeenTarget> seen(list.size());
   for (std::size_t t = 0; t < list.size(); ++t) {

@@ -1,8 +1,9 @@
 #include "registration/free_directions.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <cstdio>
 
 namespace arris {
 namespace {
@@ -27,11 +28,9 @@ std::vector<std::string> free_directions(const Eigen::Matrix<double, 6, 6>& info
     // A screw about the pivot: its axis passes where the shift is undone by the turn.
     const Eigen::Vector3d through =
         is_turn ? Eigen::Vector3d(pivot_mm + axis.cross(shift) * size_mm / turn.norm()) : pivot_mm;
-    char text[200];
-    std::snprintf(text, sizeof text, "%s (%.3f %.3f %.3f) through (%.1f %.1f %.1f) mm, CAD frame",
-                  is_turn ? "turn about the axis" : "shift along", axis.x(), axis.y(), axis.z(), through.x(),
-                  through.y(), through.z());
-    words.emplace_back(text);
+    words.push_back(fmt::format("{} ({:.3f} {:.3f} {:.3f}) through ({:.1f} {:.1f} {:.1f}) mm, CAD frame",
+                                is_turn ? "turn about the axis" : "shift along", axis.x(), axis.y(), axis.z(),
+                                through.x(), through.y(), through.z()));
   }
   return words;
 }

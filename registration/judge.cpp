@@ -1,8 +1,9 @@
 #include "registration/judge.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "acquisition/geometry/rigid_fit.hpp"
 #include "registration/seams.hpp"
@@ -48,20 +49,15 @@ Unseen longest_unseen(const EdgeFit& edge, const std::vector<char>& shown, bool 
 }
 
 std::string rows_along_edge(double row_gap_mm) {
-  char text[200];
-  std::snprintf(
-      text, sizeof text,
-      ": rows of points %.1f mm apart run along it, and it lies anywhere between two; scan it with rows "
+  return fmt::format(
+      ": rows of points {:.1f} mm apart run along it, and it lies anywhere between two; scan it with rows "
       "across the edge",
       row_gap_mm);
-  return text;
 }
 
 std::string not_seen(const Curve& curve, const Unseen& gap, double most_mm) {
-  char text[200];
-  std::snprintf(text, sizeof text, "contour %d not seen from s = %.0f to %.0f mm (%.0f mm, at most %.0f)",
-                curve.contour().id, gap.from_mm, gap.from_mm + gap.length_mm, gap.length_mm, most_mm);
-  return text;
+  return fmt::format("contour {} not seen from s = {:.0f} to {:.0f} mm ({:.0f} mm, at most {:.0f})",
+                     curve.contour().id, gap.from_mm, gap.from_mm + gap.length_mm, gap.length_mm, most_mm);
 }
 
 /// Stretches that show no edge, or one that may lie anywhere between two rows of points.
@@ -100,13 +96,10 @@ void judge_coverage(const CadModel& cad, const RegistrationOptions& options, Reg
   for (std::size_t c = 0; c < result.contours.size(); ++c) {
     const EdgeFit& edge = result.contours[c].edge;
     const int id = cad.contours[c].contour().id;
-    char text[200];
     if (edge.seen_ratio() < options.min_seen_ratio) {
-      std::snprintf(text, sizeof text, "contour %d: the scan shows %.0f %% of the %s, %.0f %% needed", id,
-                    100.0 * edge.seen_ratio(),
-                    options.role == ContourRole::kEdge ? "edge" : "surface along it",
-                    100.0 * options.min_seen_ratio);
-      result.refusals.emplace_back(text);
+      result.refusals.push_back(fmt::format(
+          "contour {}: the scan shows {:.0f} % of the {}, {:.0f} % needed", id, 100.0 * edge.seen_ratio(),
+          options.role == ContourRole::kEdge ? "edge" : "surface along it", 100.0 * options.min_seen_ratio));
     }
     if (options.method == RegistrationMethod::kSurface)
       judge_gaps_of_field(cad.contours[c], edge, options, result);
@@ -121,12 +114,9 @@ void judge_seams(const CadModel& cad, Registration& result) {
     const double limit_mm = seam_limit_mm(result.contours[c].edge);
     for (const Seam& seam : seams_of(motion)) {
       if (seam.jump_mm < limit_mm) continue;
-      char text[200];
-      std::snprintf(
-          text, sizeof text,
-          "contour %d: the segments on both sides of s = %.0f mm disagree by %.1f mm (at most %.1f)",
-          cad.contours[c].contour().id, seam.arc_mm, seam.jump_mm, limit_mm);
-      result.refusals.emplace_back(text);
+      result.refusals.push_back(fmt::format(
+          "contour {}: the segments on both sides of s = {:.0f} mm disagree by {:.1f} mm (at most {:.1f})",
+          cad.contours[c].contour().id, seam.arc_mm, seam.jump_mm, limit_mm));
     }
   }
 }
@@ -139,24 +129,19 @@ void judge_residuals(const CadModel& cad, const ScanModel& scan, Registration& r
   for (std::size_t c = 0; c < result.contours.size(); ++c) {
     const double limit_mm = explained_residual_mm(scan);
     if (result.contours[c].edge.residual_sigma_mm < limit_mm) continue;
-    char text[200];
-    std::snprintf(
-        text, sizeof text,
-        "contour %d: the surface beside the edge is not explained: residual %.2f mm, scanner noise %.2f mm",
-        cad.contours[c].contour().id, result.contours[c].edge.residual_sigma_mm, scan.noise_sigma_mm);
-    result.refusals.emplace_back(text);
+    result.refusals.push_back(fmt::format(
+        "contour {}: the surface beside the edge is not explained: residual {:.2f} mm, scanner noise "
+        "{:.2f} mm",
+        cad.contours[c].contour().id, result.contours[c].edge.residual_sigma_mm, scan.noise_sigma_mm));
   }
 }
 
 void judge_strain(Registration& result) {
   if (std::abs(result.face_strain_ratio) < kImpossibleStrainRatio) return;
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "the contours come out %.0f %% %s than drawn, which no part on a fixture is: look for folded "
-                "triangles in the drawing, and whether it is this part",
-                100.0 * std::abs(result.face_strain_ratio),
-                result.face_strain_ratio > 0.0 ? "longer" : "shorter");
-  result.refusals.emplace_back(text);
+  result.refusals.push_back(fmt::format(
+      "the contours come out {:.0f} % {} than drawn, which no part on a fixture is: look for folded "
+      "triangles in the drawing, and whether it is this part",
+      100.0 * std::abs(result.face_strain_ratio), result.face_strain_ratio > 0.0 ? "longer" : "shorter"));
 }
 
 void judge_moved(const CadModel& cad, const PoseWatch& watch, Registration& result) {
@@ -170,13 +155,10 @@ void judge_moved(const CadModel& cad, const PoseWatch& watch, Registration& resu
   if (!nearest.usable()) return;
   const double worse = watch.times_worse(nearest.to_from);
   if (worse <= kAstrayRatio) return;
-  char text[240];
-  std::snprintf(text, sizeof text,
-                "the contours were moved along the part to where the whole scan fits %.1f times worse than "
-                "where it was found (at most %.2f): stray points or gaps led the fit astray; scan the rims "
-                "again",
-                worse, kAstrayRatio);
-  result.refusals.emplace_back(text);
+  result.refusals.push_back(fmt::format(
+      "the contours were moved along the part to where the whole scan fits {:.1f} times worse than "
+      "where it was found (at most {:.2f}): stray points or gaps led the fit astray; scan the rims again",
+      worse, kAstrayRatio));
 }
 
 void judge_projection(const CadModel& cad, const ProjectionOptions& options, Registration& result) {
@@ -188,21 +170,21 @@ void judge_projection(const CadModel& cad, const ProjectionOptions& options, Reg
       result.refusals.push_back(contour + "no " + model + " can be fitted: " + found.fit.reason);
       continue;
     }
-    char text[300];
     if (found.residual.height_rms_mm > options.max_residual_mm) {
-      std::snprintf(text, sizeof text,
-                    "the surface beside it is not bent as a %s: %.2f mm rms left (at most %.2f); "
-                    "registration.projection.model = \"spline\" or method = \"subdivision\" can follow it",
-                    model.c_str(), found.residual.height_rms_mm, options.max_residual_mm);
-      result.refusals.push_back(contour + text);
+      result.refusals.push_back(
+          contour +
+          fmt::format("the surface beside it is not bent as a {}: {:.2f} mm rms left (at most {:.2f}); "
+                      "registration.projection.model = \"spline\" or method = \"subdivision\" can follow it",
+                      model, found.residual.height_rms_mm, options.max_residual_mm));
     }
     const double limit_mm = options.max_residual_mm + kAcrossEdgeLimits * found.edge.edge_limit_mm();
     if (found.residual.across_rms_mm > limit_mm) {
-      std::snprintf(text, sizeof text,
-                    "the edge has moved in the surface, which no projection follows: %.2f mm rms (at most "
-                    "%.2f); method = \"subdivision\" does",
-                    found.residual.across_rms_mm, limit_mm);
-      result.refusals.push_back(contour + text);
+      result.refusals.push_back(
+          contour +
+          fmt::format(
+              "the edge has moved in the surface, which no projection follows: {:.2f} mm rms (at most "
+              "{:.2f}); method = \"subdivision\" does",
+              found.residual.across_rms_mm, limit_mm));
     }
   }
 }

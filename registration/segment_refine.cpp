@@ -1,8 +1,9 @@
 #include "registration/segment_refine.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "acquisition/geometry/median.hpp"
 #include "registration/carried_curve.hpp"
@@ -220,10 +221,8 @@ std::string SegmentRefinement::statement() const {
     after2 += seam.after.jump_mm * seam.after.jump_mm;
   }
   const double count = std::max<double>(1.0, static_cast<double>(seams.size()));
-  char text[160];
-  std::snprintf(text, sizeof text, "%s after %zu rounds; seams jump by %.3f mm rms, before %.3f mm",
-                stop.c_str(), rounds.size(), std::sqrt(after2 / count), std::sqrt(before2 / count));
-  return text;
+  return fmt::format("{} after {} rounds; seams jump by {:.3f} mm rms, before {:.3f} mm", stop, rounds.size(),
+                     std::sqrt(after2 / count), std::sqrt(before2 / count));
 }
 
 SegmentRefinement refine_segments(const CadModel& cad, const ScanModel& scan, const EdgeData& data,

@@ -1,9 +1,10 @@
 #include "registration/surface_stage.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "registration/found_edge.hpp"
 #include "registration/judge.hpp"
@@ -29,9 +30,7 @@ EdgeFit no_edge(const Curve& curve, const EdgeFitOptions& options) {
 }
 
 std::string text_of(const Eigen::Vector3d& direction) {
-  char text[64];
-  std::snprintf(text, sizeof text, "(%.2f %.2f %.2f)", direction.x(), direction.y(), direction.z());
-  return text;
+  return fmt::format("({:.2f} {:.2f} {:.2f})", direction.x(), direction.y(), direction.z());
 }
 
 /// Worst standard deviation across a contour or normal to it, and where.
@@ -55,21 +54,19 @@ void judge_place(const CadModel& cad, const SurfaceField& field, const Registrat
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> slide(field.slide_covariance_mm2(c));
     const bool slides = slide.eigenvalues()[2] > kSlideShare * worst.sd_mm * worst.sd_mm;
     const int id = cad.contours[c].contour().id;
-    char text[300];
     if (slides) {
       const std::string motion = "slide along " + text_of(slide.eigenvectors().col(2)) + " of the scan";
-      std::snprintf(text, sizeof text,
-                    "contour %d: nothing in the scan holds its %s: standard deviation %.1f mm, at most %.1f; "
-                    "scan an outline or datum holes of the drawing as well",
-                    id, motion.c_str(), worst.sd_mm, options.max_sd_mm);
+      result.refusals.push_back(
+          fmt::format("contour {}: nothing in the scan holds its {}: standard deviation {:.1f} mm, at most "
+                      "{:.1f}; scan an outline or datum holes of the drawing as well",
+                      id, motion, worst.sd_mm, options.max_sd_mm));
       result.free_directions.push_back(motion);
     } else {
-      std::snprintf(text, sizeof text,
-                    "contour %d: its place is not known well enough at s = %.0f mm: standard deviation "
-                    "%.1f mm, at most %.1f",
-                    id, worst.arc_mm, worst.sd_mm, options.max_sd_mm);
+      result.refusals.push_back(fmt::format(
+          "contour {}: its place is not known well enough at s = {:.0f} mm: standard deviation {:.1f} mm, at "
+          "most {:.1f}",
+          id, worst.arc_mm, worst.sd_mm, options.max_sd_mm));
     }
-    result.refusals.emplace_back(text);
   }
 }
 
@@ -110,10 +107,9 @@ void judge_cut(const CadModel& cad, const ScanModel& scan, const std::vector<See
   judge_coverage(cad, options, result);
   result.stage_residual_mm = {{"rigid", result.rigid.surface_rms_mm}, {"surface", sigma_mm}};
   if (sigma_mm < explained_residual_mm(scan)) return;
-  char text[200];
-  std::snprintf(text, sizeof text, "the surface is not explained: residual %.2f mm, scanner noise %.2f mm",
-                sigma_mm, scan.noise_sigma_mm);
-  result.refusals.emplace_back(text);
+  result.refusals.push_back(
+      fmt::format("the surface is not explained: residual {:.2f} mm, scanner noise {:.2f} mm", sigma_mm,
+                  scan.noise_sigma_mm));
 }
 
 /// Role edge: an edge that lies elsewhere than where the field carries it, its own offset aside, was not
@@ -133,36 +129,28 @@ void judge_edges(const CadModel& cad, const SurfaceField& field, const Registrat
     const double rms_mm = std::sqrt(sum2 / count), offset_mm = field.fit().offset_mm[c];
     const double most_offset_mm = kMostOffsetSds * options.surface.offset_sd_mm + edge.edge_limit_mm();
     if (std::abs(offset_mm) > most_offset_mm) {
-      char text[240];
-      std::snprintf(
-          text, sizeof text,
-          "contour %d: its edge lies %.2f mm %s the drawn one all round, at most %.2f: the part is "
+      result.refusals.push_back(fmt::format(
+          "contour {}: its edge lies {:.2f} mm {} the drawn one all round, at most {:.2f}: the part is "
           "of another size, was placed wrongly, or registration.surface.offset_sd_mm must be larger",
-          curve.contour().id, std::abs(offset_mm), offset_mm > 0.0 ? "inside" : "outside", most_offset_mm);
-      result.refusals.emplace_back(text);
+          curve.contour().id, std::abs(offset_mm), offset_mm > 0.0 ? "inside" : "outside", most_offset_mm));
       continue;
     }
     const double limit_mm = kUnfollowedEdgeMm + kUnfollowedEdgeLimits * edge.edge_limit_mm();
     if (rms_mm <= limit_mm) continue;
-    char text[240];
-    std::snprintf(
-        text, sizeof text,
-        "contour %d: the edge in the scan is not explained: %.2f mm rms beside where the field carries "
-        "it, at most %.2f; scan.initial in the recipe helps when the part was placed wrongly",
-        curve.contour().id, rms_mm, limit_mm);
-    result.refusals.emplace_back(text);
+    result.refusals.push_back(fmt::format(
+        "contour {}: the edge in the scan is not explained: {:.2f} mm rms beside where the field carries "
+        "it, at most {:.2f}; scan.initial in the recipe helps when the part was placed wrongly",
+        curve.contour().id, rms_mm, limit_mm));
   }
 }
 
 /// A fit that slid along the part and took the edges it left behind for gaps.
 void judge_slide(const SurfaceField& field, double spacing_mm, Registration& result) {
   if (!is_slide(field.fit().elsewhere.by_mm.norm(), spacing_mm)) return;
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "the edges would be seen much better with the part moved by %.0f mm: it was placed wrongly; "
-                "scan.initial in the recipe helps, or a scan of what is missing",
-                field.fit().elsewhere.by_mm.norm());
-  result.refusals.emplace_back(text);
+  result.refusals.push_back(fmt::format(
+      "the edges would be seen much better with the part moved by {:.0f} mm: it was placed wrongly; "
+      "scan.initial in the recipe helps, or a scan of what is missing",
+      field.fit().elsewhere.by_mm.norm()));
 }
 
 }  // namespace

@@ -215,12 +215,15 @@ TEST(SlowFixtureTargets, AreRightOrRefusedInTwoHundredCells) {
 TEST(FixtureTargets, AMovedOneIsRefusedByName) {
   Random random(6);
   for (std::size_t moved = 0; moved < 5; ++moved) {
-    const auto list = five_spheres(0.02);
+    auto list = five_spheres(0.02);
+    list[moved].id.append(300, 'x');  // a name of any length leaves the sentence whole
     auto now = list;
     now[moved].place_mm += 1.0 * random.direction();
     const TargetFrame frame = scene_of(now, TargetScanOptions(), random).solve(list);
     ASSERT_FALSE(frame.usable());
     EXPECT_NE(frame.reasons.front().find("fixture target " + list[moved].id + " is "), std::string::npos)
+        << all_reasons(frame);
+    EXPECT_NE(frame.reasons.front().find("line in the list is wrong"), std::string::npos)
         << all_reasons(frame);
   }
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <numeric>
 
 namespace arris::bench {
 namespace {
@@ -34,6 +35,10 @@ double quantile(const std::vector<double>& values, double share) {
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
+double mean(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+}
+
 /// Met on how many of all seeds; refused ones are not.
 std::string reached(const StudyResult& result, const std::function<bool(const StudyOutcome&)>& good) {
   const auto count = std::count_if(result.seeds.begin(), result.seeds.end(),
@@ -43,8 +48,9 @@ std::string reached(const StudyResult& result, const std::function<bool(const St
 
 std::string row(const StudyResult& result, const std::string& what, const Value& value, double limit) {
   const std::vector<double> values = sorted(result, value);
-  return fmt::format("| {} | {} | {:.3g} | {:.3f} | {:.3f} | {:.3f} | {} |\n", name_of(result.study_case),
-                     what, limit, quantile(values, 0.5), quantile(values, 0.95), quantile(values, 1.0),
+  return fmt::format("| {} | {} | {:.3g} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {} |\n",
+                     name_of(result.study_case), what, limit, mean(values), quantile(values, 0.5),
+                     quantile(values, 0.95), quantile(values, 1.0),
                      reached(result, [&](const StudyOutcome& o) { return value(o) <= limit; }));
 }
 
@@ -75,7 +81,8 @@ void add_coverage(const std::string& name, const std::vector<const StudyOutcome*
 
 std::string figure_table(const std::vector<StudyResult>& results) {
   std::string text =
-      "| case | figure | at most | median | 95 % | worst | met by |\n|---|---|---|---|---|---|---|\n";
+      "| case | figure | at most | mean | median | 95 % | worst | met by "
+      "|\n|---|---|---|---|---|---|---|---|\n";
   const auto rms = [](const StudyOutcome& o) { return o.rms_mm; };
   const auto max = [](const StudyOutcome& o) { return o.max_mm; };
   const StudyResult* complete = of(results, StudyCase::kComplete);
