@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "acquisition/geometry/parallel_for.hpp"
+#include "acquisition/types/error.hpp"
 #include "tests/bench/trust/report.hpp"
 #include "tests/support/bench_program.hpp"
 
@@ -18,18 +19,31 @@ namespace {
 using namespace arris::bench;  // NOLINT: one small program
 
 const char kUsage[] =
-    "bench_trust [--fixtures fixtures/fe] [--first 1000] [--seeds 200] [--threads 2] [--out FILE.md]\n";
+    "bench_trust [--fixtures fixtures/fe] [--first 1000] [--seeds 200] [--threads 2]\n"
+    "            [--only complete|independent|ten|twenty|strays|burrs] [--out FILE.md]\n"
+    "--only takes a quick look: the page is left as it is.\n";
 
 struct Arguments {
   std::filesystem::path fixtures, out;
+  std::vector<StudyCase> cases;
   int first = 0, seeds = 0, threads = 0;
 };
 
+/// All cases, or the one that is asked for.
+std::vector<StudyCase> cases_of(const std::string& only) {
+  std::vector<StudyCase> cases;
+  for (const StudyCase study_case : kStudyCases)
+    if (only.empty() || only == word_of(study_case)) cases.push_back(study_case);
+  if (cases.empty()) throw arris::Error(arris::Fault::kUsage, "no case " + only + "\n" + kUsage);
+  return cases;
+}
+
 Arguments parse(int argc, char** argv) {
-  const Words words(argc, argv, kUsage, {"--fixtures", "--first", "--seeds", "--threads", "--out"});
+  const Words words(argc, argv, kUsage, {"--fixtures", "--first", "--seeds", "--threads", "--only", "--out"});
   Arguments arguments;
   arguments.fixtures = words.text("--fixtures", "fixtures/fe");
-  arguments.out = words.text("--out");
+  arguments.cases = cases_of(words.text("--only"));
+  if (!words.has("--only")) arguments.out = words.text("--out");
   arguments.first = words.count("--first", 1000, 0);
   arguments.seeds = words.count("--seeds", 200, 1);
   arguments.threads = words.count("--threads", 2, 1);
@@ -50,7 +64,7 @@ std::string line(std::uint64_t seed, const std::string& kind, const std::vector<
 std::vector<StudyResult> measure(const Arguments& arguments) {
   const auto count = static_cast<std::size_t>(arguments.seeds);
   std::vector<StudyResult> results;
-  for (const StudyCase study_case : kStudyCases)
+  for (const StudyCase study_case : arguments.cases)
     results.push_back({study_case, std::vector<StudyOutcome>(count)});
   arris::parallel_for(count, 1, arguments.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -86,11 +86,12 @@ std::string figure_table(const std::vector<StudyResult>& results) {
   const auto rms = [](const StudyOutcome& o) { return o.rms_mm; };
   const auto max = [](const StudyOutcome& o) { return o.max_mm; };
   const StudyResult* complete = of(results, StudyCase::kComplete);
-  if (complete) {
-    text += row(*complete, "rms, mm", rms, 0.02) + row(*complete, "max, mm", max, 0.06);
+  for (const StudyResult* whole : {complete, of(results, StudyCase::kIndependent)}) {
+    if (!whole) continue;
+    text += row(*whole, "rms, mm", rms, 0.02) + row(*whole, "max, mm", max, 0.06);
     text += row(
-        *complete, "normals, 95th percentile, degrees",
-        [](const StudyOutcome& o) { return o.normal_p95_deg; }, 0.2);
+        *whole, "normals, 95th percentile, degrees", [](const StudyOutcome& o) { return o.normal_p95_deg; },
+        0.2);
   }
   if (const StudyResult* ten = of(results, StudyCase::kTenMissing)) {
     text += row(*ten, "max, mm", max, 0.08);

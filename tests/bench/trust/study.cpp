@@ -16,7 +16,7 @@ synthetic::ScanOptions scan_options(const StudyPart& study, StudyCase study_case
   synthetic::ScanOptions options;
   const synthetic::Part& part = *study.part;
   options.points = std::llround(part.band_area_mm2(part.band_mm()) / (kSpacingMm * kSpacingMm));
-  options.noise_length_mm = study.noise_length_mm;
+  if (study_case != StudyCase::kIndependent) options.noise_length_mm = study.noise_length_mm;
   if (study_case == StudyCase::kTenMissing) options.missing_ratio = 0.1;
   if (study_case == StudyCase::kTwentyMissing) options.missing_ratio = 0.2;
   if (study_case == StudyCase::kStrays) {
@@ -68,6 +68,8 @@ std::string name_of(StudyCase study_case) {
   switch (study_case) {
     case StudyCase::kComplete:
       return "complete";
+    case StudyCase::kIndependent:
+      return "complete, noise independent from point to point";
     case StudyCase::kTenMissing:
       return "10 % of contour and band missing";
     case StudyCase::kTwentyMissing:
@@ -76,6 +78,24 @@ std::string name_of(StudyCase study_case) {
       return "30 % strays within 30 mm of the edge";
     case StudyCase::kBurrs:
       return "burrs of 0.5 to 3 mm on 10 % of the edge";
+  }
+  return {};
+}
+
+std::string word_of(StudyCase study_case) {
+  switch (study_case) {
+    case StudyCase::kComplete:
+      return "complete";
+    case StudyCase::kIndependent:
+      return "independent";
+    case StudyCase::kTenMissing:
+      return "ten";
+    case StudyCase::kTwentyMissing:
+      return "twenty";
+    case StudyCase::kStrays:
+      return "strays";
+    case StudyCase::kBurrs:
+      return "burrs";
   }
   return {};
 }

@@ -12,9 +12,19 @@
 namespace arris::bench {
 
 /// What is wrong with a scan of the study; all at a point spacing of 0.5 mm, noise 0.05 mm.
-enum class StudyCase { kComplete, kTenMissing, kTwentyMissing, kStrays, kBurrs };
-inline constexpr std::array kStudyCases = {StudyCase::kComplete, StudyCase::kTenMissing,
-                                           StudyCase::kTwentyMissing, StudyCase::kStrays, StudyCase::kBurrs};
+enum class StudyCase {
+  kComplete,
+  kIndependent,  ///< complete, and no two points share noise: what the others' shared noise costs
+  kTenMissing,
+  kTwentyMissing,
+  kStrays,
+  kBurrs
+};
+inline constexpr std::array kStudyCases = {StudyCase::kComplete,   StudyCase::kIndependent,
+                                           StudyCase::kTenMissing, StudyCase::kTwentyMissing,
+                                           StudyCase::kStrays,     StudyCase::kBurrs};
+/// As --only has it.
+[[nodiscard]] std::string word_of(StudyCase study_case);
 [[nodiscard]] std::string name_of(StudyCase study_case);
 
 /// One scan: how far the path is from the true edge, and what the method said about that.
