@@ -1,6 +1,7 @@
 #include "registration/coarse_candidates.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "registration/support_fit.hpp"
 
