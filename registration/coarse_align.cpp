@@ -100,10 +100,9 @@ void CoarseAligner::refuse_no_start() {
   result_.reason =
       context_.options.edges_needed
           ? "no closed contour of the scan has the length of an accepted CAD contour"
-          : "role cut: no outline and no datum hole of the drawing is in the scan as a closed loop, so every "
-            "slide along the face and the turn about its normal are free; scan one of them all round, or "
-            "give "
-            "scan.initial";
+          : "role cut: no outline and no datum hole of the drawing is in the scan as a closed loop, so "
+            "every slide along the face and the turn about its normal are free; scan one of them all round, "
+            "or give scan.initial";
 }
 
 void CoarseAligner::refuse_no_fit(const PoseCandidate& best) {
