@@ -14,10 +14,12 @@ constexpr double kStationMm = 2.0;
 constexpr double kTauFloorMm = 0.03;
 constexpr double kClaimTaus = 3.0;  // farther inside a point pulls nothing, farther outside it is let go
 constexpr double kSitePoints = 45.0, kSiteBlurs = 5.0;  // farther inside a point bounds nothing
-constexpr double kDensePerMm = 300.0;     // so many points within a mm of an edge: its mode and mean are one
-constexpr double kStrayHeightMm = 2.0;    // flyers of an edge stand above and below it
-constexpr double kUnseenStrays = 0.5;     // none seen is no proof that there are none
-constexpr double kMostStrayRatio = 0.05;  // early rounds leave material beyond the edge
+// So many points within a mm of an edge: its mode is taken for its mean, an eighth more error across
+// (docs/trust.md).
+constexpr double kDensePerMm = 300.0;
+constexpr double kStrayHeightMm = 2.0;                  // flyers of an edge stand above and below it
+constexpr double kUnseenStrays = 0.5;                   // none seen is no proof that there are none
+constexpr double kMostStrayRatio = 0.05;                // early rounds leave material beyond the edge
 constexpr double kBurrTaus = 4.0, kBurrSpacings = 0.3;  // nearer to the edge a point may well be of it
 constexpr double kMostBurrRatio = 0.7;  // of an edge: with more taken for burrs, the rest does not hold it
 constexpr double kHighestBurrMm = 4.0, kBurrGates = 1.5;

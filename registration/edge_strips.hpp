@@ -57,8 +57,8 @@ class EdgeStrips {
   /// material: of what lies level with it farther out than half a strip, or of what stands above and below it
   /// nearer by, whichever is more.
   [[nodiscard]] double stray_ratio() const;
-  /// The points that may bound an edge: near it, and those beyond it. Of an edge so dense that its mode and
-  /// mean are one, none.
+  /// The points that may bound an edge: near it, and those beyond it. Of an edge so dense that its mode is
+  /// taken for its mean, none.
   [[nodiscard]] std::vector<EdgeSite> sites(const std::vector<double>& offset_mm, double tau_mm,
                                             double stray_ratio) const;
   /// From now on add() takes these points by their messages.
