@@ -41,7 +41,7 @@ CoarseCandidates with_turned(CoarseContext& context, CoarseCandidates found) {
 }
 
 /// The best of a pose and of those that the edge by support makes of it in turn.
-PoseCandidate sharpened(CoarseContext& context, PoseCandidate pose) {
+PoseCandidate sharpened_one(CoarseContext& context, PoseCandidate pose) {
   RigidIcpOptions icp;
   icp.surface_points = kSharpeningPoints;
   icp.band_mm = context.options.band_mm;
@@ -88,7 +88,7 @@ CoarseCandidates coarse_candidates(CoarseContext& context) {
 std::vector<PoseCandidate> sharpened(CoarseContext& context, std::vector<PoseCandidate> poses) {
   sort_by_misfit(poses);
   for (std::size_t i = 0; i < std::min(kSharpened, poses.size()); ++i)
-    if (poses[i].usable()) poses[i] = sharpened(context, std::move(poses[i]));
+    if (poses[i].usable()) poses[i] = sharpened_one(context, std::move(poses[i]));
   context.fitness.sort(poses);
   return poses;
 }

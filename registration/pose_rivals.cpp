@@ -110,9 +110,9 @@ void PoseRivals::refuse_ambiguous(const PoseCandidate& best, const PoseCandidate
 void PoseRivals::refuse_untold(const PoseCandidate& best, const PoseCandidate& other) {
   verdict_.reason = fmt::format(
       "two poses fit alike: turned by {:.0f} degrees the drawing's contours that the scan shows lie on "
-      "themselves, and the tool path does not, so that only bending or noise would choose (runner-up {:.0f} "
-      "% "
-      "of the best); scan also a hole or a corner that tells them apart, or give scan.initial in the recipe",
+      "themselves, and the tool path does not, so that only bending or noise would choose (runner-up "
+      "{:.0f} % of the best); scan also a hole or a corner that tells them apart, or give "
+      "scan.initial in the recipe",
       rotation_between_rad(best.scan_from_cad, other.scan_from_cad) * 180.0 / std::numbers::pi,
       100.0 * verdict_.runner_up_ratio);
 }

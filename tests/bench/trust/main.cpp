@@ -33,7 +33,7 @@ struct Arguments {
 std::vector<StudyCase> cases_of(const std::string& only) {
   std::vector<StudyCase> cases;
   for (const StudyCase study_case : kStudyCases)
-    if (only.empty() || only == word_of(study_case)) cases.push_back(study_case);
+    if (only.empty() || only == words_of(study_case).word) cases.push_back(study_case);
   if (cases.empty()) throw arris::Error(arris::Fault::kUsage, "no case " + only + "\n" + kUsage);
   return cases;
 }

@@ -49,7 +49,7 @@ std::string reached(const StudyResult& result, const std::function<bool(const St
 std::string row(const StudyResult& result, const std::string& what, const Value& value, double limit) {
   const std::vector<double> values = sorted(result, value);
   return fmt::format("| {} | {} | {:.3g} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {} |\n",
-                     name_of(result.study_case), what, limit, mean(values), quantile(values, 0.5),
+                     words_of(result.study_case).name, what, limit, mean(values), quantile(values, 0.5),
                      quantile(values, 0.95), quantile(values, 1.0),
                      reached(result, [&](const StudyOutcome& o) { return value(o) <= limit; }));
 }
@@ -125,7 +125,7 @@ std::string distribution_table(const std::vector<StudyResult>& results) {
     for (const bool peak : {false, true}) {
       const std::vector<double> values =
           sorted(result, [&](const StudyOutcome& o) { return peak ? o.max_mm : o.rms_mm; });
-      text += fmt::format("| {} | {} |", name_of(result.study_case), peak ? "max" : "rms");
+      text += fmt::format("| {} | {} |", words_of(result.study_case).name, peak ? "max" : "rms");
       for (const double share : {0.05, 0.25, 0.5, 0.75, 0.95, 1.0})
         text += fmt::format(" {:.3f} |", quantile(values, share));
       text += fmt::format(" {} of {} |\n", result.seeds.size() - values.size(), result.seeds.size());
@@ -144,7 +144,7 @@ std::string study_coverage_table(const std::vector<StudyResult>& results) {
       all.push_back(&outcome);
       kinds[outcome.kind].push_back(&outcome);
     }
-    add_coverage(name_of(result.study_case), outcomes, text);
+    add_coverage(words_of(result.study_case).name, outcomes, text);
   }
   for (const auto& [kind, outcomes] : kinds) add_coverage("parts: " + kind, outcomes, text);
   add_coverage("**all**", all, text);
@@ -156,8 +156,9 @@ std::string refusal_list(const std::vector<StudyResult>& results) {
   for (const StudyResult& result : results)
     for (const StudyOutcome& outcome : result.seeds) {
       if (accepted(outcome)) continue;
-      text += fmt::format("- seed {}, {}, {}: {}", outcome.seed, outcome.kind, name_of(result.study_case),
-                          outcome.refusals.empty() ? "no field" : outcome.refusals.front());
+      text +=
+          fmt::format("- seed {}, {}, {}: {}", outcome.seed, outcome.kind, words_of(result.study_case).name,
+                      outcome.refusals.empty() ? "no field" : outcome.refusals.front());
       if (outcome.has_path)
         text += fmt::format(" (it would have been off by {:.3f} mm at most)", outcome.max_mm);
       text += "\n";

@@ -64,38 +64,20 @@ void sum_up(StudyOutcome& outcome) {
 
 }  // namespace
 
-std::string name_of(StudyCase study_case) {
+StudyCaseWords words_of(StudyCase study_case) {
   switch (study_case) {
     case StudyCase::kComplete:
-      return "complete";
+      return {"complete", "complete"};
     case StudyCase::kIndependent:
-      return "complete, noise independent from point to point";
+      return {"independent", "complete, noise independent from point to point"};
     case StudyCase::kTenMissing:
-      return "10 % of contour and band missing";
+      return {"ten", "10 % of contour and band missing"};
     case StudyCase::kTwentyMissing:
-      return "20 % missing";
+      return {"twenty", "20 % missing"};
     case StudyCase::kStrays:
-      return "30 % strays within 30 mm of the edge";
+      return {"strays", "30 % strays within 30 mm of the edge"};
     case StudyCase::kBurrs:
-      return "burrs of 0.5 to 3 mm on 10 % of the edge";
-  }
-  return {};
-}
-
-std::string word_of(StudyCase study_case) {
-  switch (study_case) {
-    case StudyCase::kComplete:
-      return "complete";
-    case StudyCase::kIndependent:
-      return "independent";
-    case StudyCase::kTenMissing:
-      return "ten";
-    case StudyCase::kTwentyMissing:
-      return "twenty";
-    case StudyCase::kStrays:
-      return "strays";
-    case StudyCase::kBurrs:
-      return "burrs";
+      return {"burrs", "burrs of 0.5 to 3 mm on 10 % of the edge"};
   }
   return {};
 }

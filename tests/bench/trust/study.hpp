@@ -23,9 +23,10 @@ enum class StudyCase {
 inline constexpr std::array kStudyCases = {StudyCase::kComplete,   StudyCase::kIndependent,
                                            StudyCase::kTenMissing, StudyCase::kTwentyMissing,
                                            StudyCase::kStrays,     StudyCase::kBurrs};
-/// As --only has it.
-[[nodiscard]] std::string word_of(StudyCase study_case);
-[[nodiscard]] std::string name_of(StudyCase study_case);
+struct StudyCaseWords {
+  std::string word, name;  ///< as --only has it, and as the tables have it
+};
+[[nodiscard]] StudyCaseWords words_of(StudyCase study_case);
 
 /// One scan: how far the path is from the true edge, and what the method said about that.
 struct StudyOutcome {
